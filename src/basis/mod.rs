@@ -1,0 +1,93 @@
+//! Basis families: which degrees of freedom (DOFs) a point sees, with value and gradient.
+//!
+//! Every family here is a tensor product of one-axis families ([`AxisFamily`]); a family of your own either
+//! does the same in a few lines (see `examples/own_basis.rs`) or implements [`BasisFamily`] directly.
+
+mod bspline;
+mod dual_domain;
+mod linear;
+pub mod tensor;
+
+pub use bspline::BSpline;
+pub use dual_domain::DualDomain;
+pub use linear::Linear;
+pub use tensor::{AxisFamily, Row};
+
+use nalgebra::SVector;
+
+use crate::grid::{Cell, Face, Grid, Side};
+use crate::scalar::Scalar;
+
+/// A family of grid basis functions `phi_i` in `D` dimensions.
+///
+/// The DOFs form a lattice, axis 0 fastest. Implementors promise a partition of unity, non-negative values,
+/// gradients that sum to zero and compact support; [`crate::testing::check_basis`] checks all of it.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no basis family for scalar `{T}` in `{D}` dimensions",
+    note = "families: Linear, DualDomain, BSpline<1>, BSpline<2>, BSpline<3>, or your own `impl BasisFamily`"
+)]
+pub trait BasisFamily<T: Scalar, const D: usize>: Clone {
+    /// Polynomial degree of the values: what they can reproduce, and how far apart along an axis two DOFs
+    /// can be whose values overlap.
+    fn degree(&self) -> usize;
+
+    /// Number of DOFs along each axis.
+    fn dofs(&self, grid: &Grid<T, D>) -> [usize; D];
+
+    /// Calls `f(dof, phi, grad phi)` (`grad phi` in 1/m) for every DOF whose value *or* gradient may be
+    /// non-zero at the point `x` of `cell`. A DOF may come twice; its parts then add up.
+    fn for_each(
+        &self,
+        grid: &Grid<T, D>,
+        cell: &Cell<D>,
+        x: &SVector<T, D>,
+        f: impl FnMut(usize, T, SVector<T, D>),
+    );
+
+    /// The same for a quadrature point that stands still. Families that smooth their gradients against grid
+    /// crossing (dual domain) give the plain ones here, since nothing crosses.
+    #[inline(always)]
+    fn for_each_at_fixed_point(
+        &self,
+        grid: &Grid<T, D>,
+        cell: &Cell<D>,
+        x: &SVector<T, D>,
+        f: impl FnMut(usize, T, SVector<T, D>),
+    ) {
+        self.for_each(grid, cell, x, f);
+    }
+
+    /// Total number of DOFs.
+    fn dof_count(&self, grid: &Grid<T, D>) -> usize {
+        self.dofs(grid).iter().product()
+    }
+
+    /// Largest difference of the numbers of two DOFs whose values overlap: the half band width of a mass
+    /// matrix.
+    fn half_band(&self, grid: &Grid<T, D>) -> usize {
+        let dofs = self.dofs(grid);
+        let mut stride = 1;
+        let mut reach = 0;
+        for count in dofs {
+            reach += self.degree().min(count - 1) * stride;
+            stride *= count;
+        }
+        reach
+    }
+
+    /// Calls `f` for every DOF on a face of the grid. The families here interpolate there: no other DOF
+    /// has a value on the face.
+    fn for_each_on_face(&self, grid: &Grid<T, D>, face: Face, mut f: impl FnMut(usize)) {
+        let dofs = self.dofs(grid);
+        let wanted = match face.side {
+            Side::Min => 0,
+            Side::Max => dofs[face.axis] - 1,
+        };
+        let stride: usize = dofs[..face.axis].iter().product();
+        for dof in 0..self.dof_count(grid) {
+            if dof / stride % dofs[face.axis] == wanted {
+                f(dof);
+            }
+        }
+    }
+}

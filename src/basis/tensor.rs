@@ -1,0 +1,106 @@
+//! Tensor products of one-axis families.
+
+use nalgebra::SVector;
+
+use crate::grid::{Cell, Grid};
+use crate::scalar::Scalar;
+
+/// The `W` DOFs that one point of an axis sees.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<T, const W: usize> {
+    /// DOF along the axis.
+    pub dof: [usize; W],
+    /// Value of its function.
+    pub value: [T; W],
+    /// Derivative of its function by the coordinate in cell sizes (multiply by `1/h`).
+    pub slope: [T; W],
+}
+
+/// A family of functions of one axis that has `n` cells of size 1; at most `W` functions per cell.
+pub trait AxisFamily<T: Scalar, const W: usize> {
+    /// Number of DOFs on an axis of `cells` cells.
+    fn dofs_on_axis(&self, cells: usize) -> usize;
+
+    /// Values and slopes in `cell` at `unit` (0 at the cell's left edge, 1 at its right one). Where fewer
+    /// than `W` functions exist, the spare entries repeat a DOF with zero value and slope.
+    fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, W>;
+}
+
+/// DOFs along each axis of the product of `family` with itself.
+pub fn dofs<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
+    family: &A,
+    grid: &Grid<T, D>,
+) -> [usize; D] {
+    grid.cells().map(|cells| family.dofs_on_axis(cells))
+}
+
+/// Visits the product functions at `x`: values multiply, a gradient takes the slope along its own axis.
+#[inline(always)]
+pub fn for_each<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
+    family: &A,
+    grid: &Grid<T, D>,
+    cell: &Cell<D>,
+    x: &SVector<T, D>,
+    mut f: impl FnMut(usize, T, SVector<T, D>),
+) {
+    let cells = grid.cells();
+    let rows: [Row<T, W>; D] = std::array::from_fn(|axis| {
+        let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
+        family.row(cells[axis], cell[axis] as usize, unit)
+    });
+    let inverse = grid.inverse_cell_size();
+    if D == 1 {
+        for k in 0..W {
+            let slope = SVector::repeat(rows[0].slope[k] * inverse[0]);
+            f(rows[0].dof[k], rows[0].value[k], slope);
+        }
+        return;
+    }
+    let shape = dofs(family, grid);
+    let mut k = [0; D];
+    loop {
+        let (dof, value, gradient) = product(&shape, &rows, &k, inverse);
+        f(dof, value, gradient);
+        if !advance(&mut k, W) {
+            return;
+        }
+    }
+}
+
+#[inline(always)]
+fn product<T: Scalar, const D: usize, const W: usize>(
+    shape: &[usize; D],
+    rows: &[Row<T, W>; D],
+    k: &[usize; D],
+    inverse: &SVector<T, D>,
+) -> (usize, T, SVector<T, D>) {
+    let (mut dof, mut value) = (0, T::one());
+    for axis in (0..D).rev() {
+        dof = dof * shape[axis] + rows[axis].dof[k[axis]];
+        value *= rows[axis].value[k[axis]];
+    }
+    let gradient = SVector::from_fn(|a, _| {
+        (0..D).fold(inverse[a], |g, axis| {
+            let row = &rows[axis];
+            g * if axis == a {
+                row.slope[k[axis]]
+            } else {
+                row.value[k[axis]]
+            }
+        })
+    });
+    (dof, value, gradient)
+}
+
+/// Counts `k` up in base `width`; false after the last combination.
+#[inline(always)]
+fn advance<const D: usize>(k: &mut [usize; D], width: usize) -> bool {
+    for digit in k.iter_mut() {
+        *digit += 1;
+        if *digit < width {
+            return true;
+        }
+        *digit = 0;
+    }
+    false
+}

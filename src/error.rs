@@ -1,0 +1,114 @@
+//! Typed errors: what is wrong, where, and what to do.
+
+use thiserror::Error;
+
+/// A grid that cannot be built.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum GridError {
+    /// A bound is infinite or not a number.
+    #[error("grid: a bound of axis {axis} is not a finite number")]
+    NotFinite {
+        /// Axis at fault.
+        axis: usize,
+    },
+    /// The box has no extent.
+    #[error("grid: axis {axis} runs from {min} to {max}; max must be greater than min")]
+    Empty {
+        /// Axis at fault.
+        axis: usize,
+        /// Lower bound (m).
+        min: f64,
+        /// Upper bound (m).
+        max: f64,
+    },
+    /// An axis has no cell.
+    #[error("grid: axis {axis} has 0 cells; at least 1 is needed")]
+    NoCells {
+        /// Axis at fault.
+        axis: usize,
+    },
+    /// More cells than a 32-bit index can tell apart.
+    #[error("grid: too many cells; fewer than 2^32 are possible")]
+    TooManyCells,
+}
+
+/// A stepper that cannot be built.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SetupError {
+    /// No particle at all.
+    #[error("there is no particle: a run needs at least one")]
+    NoParticles,
+    /// Particle data of different lengths.
+    #[error("particle data have different lengths: {name} has {found}, positions have {expected}")]
+    Lengths {
+        /// Name of the field at fault.
+        name: &'static str,
+        /// Its length.
+        found: usize,
+        /// Number of positions.
+        expected: usize,
+    },
+    /// A particle outside the grid.
+    #[error("particle {particle} starts at {position:?}, outside the grid")]
+    Outside {
+        /// Index of the particle.
+        particle: usize,
+        /// Its position (m).
+        position: Vec<f64>,
+    },
+    /// A mass, volume, velocity or stress that makes no sense.
+    #[error("particle {particle} has {name} = {value}; {allowed}")]
+    Value {
+        /// Index of the particle.
+        particle: usize,
+        /// Name of the quantity.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// Material constants that make no sense.
+    #[error("{name} = {value}; {allowed}")]
+    Constant {
+        /// Name of the constant.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+}
+
+/// A step that could not be completed; the particles hold the state in which it was noticed.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum StepError {
+    /// A particle is no longer in the grid.
+    #[error("step {step}: particle {particle} left the grid at {position:?} m")]
+    LeftGrid {
+        /// Number of the step, from 1.
+        step: usize,
+        /// Index of the particle.
+        particle: usize,
+        /// Where it went (m).
+        position: Vec<f64>,
+    },
+    /// A particle's volume is zero or negative, or a number is no longer finite.
+    #[error("step {step}: {name} of particle {particle} became {value}")]
+    Invalid {
+        /// Number of the step, from 1.
+        step: usize,
+        /// Index of the particle.
+        particle: usize,
+        /// Name of the quantity.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The step size is not a positive number.
+    #[error("the time step is {value} s; it must be positive and finite")]
+    StepSize {
+        /// The step asked for (s).
+        value: f64,
+    },
+}

@@ -1,0 +1,121 @@
+//! What can be reconstructed and summed: [`Field`].
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::scalar::Scalar;
+
+/// A quantity that particles carry and that can be added and scaled: a scalar, a vector, a tensor,
+/// or several of them fitted in one pass ([`MassMomentum`]).
+pub trait Field<T>: Copy {
+    /// The neutral element.
+    fn zero() -> Self;
+
+    /// `self += weight * other`.
+    fn add_scaled(&mut self, weight: T, other: Self);
+
+    /// Number of scalars in it.
+    const COMPONENTS: usize;
+
+    /// Its `i`-th scalar, `i < COMPONENTS`.
+    fn component(&self, i: usize) -> T;
+
+    /// Sets its `i`-th scalar, `i < COMPONENTS`.
+    fn set_component(&mut self, i: usize, value: T);
+
+    /// `weight * self`.
+    #[inline(always)]
+    fn scaled(self, weight: T) -> Self {
+        let mut result = Self::zero();
+        result.add_scaled(weight, self);
+        result
+    }
+}
+
+impl<T: Scalar> Field<T> for T {
+    const COMPONENTS: usize = 1;
+
+    #[inline(always)]
+    fn component(&self, _i: usize) -> T {
+        *self
+    }
+
+    #[inline(always)]
+    fn set_component(&mut self, _i: usize, value: T) {
+        *self = value;
+    }
+
+    #[inline(always)]
+    fn zero() -> Self {
+        T::zero()
+    }
+
+    #[inline(always)]
+    fn add_scaled(&mut self, weight: T, other: Self) {
+        *self += weight * other;
+    }
+}
+
+impl<T: Scalar, const R: usize, const C: usize> Field<T> for SMatrix<T, R, C> {
+    const COMPONENTS: usize = R * C;
+
+    #[inline(always)]
+    fn component(&self, i: usize) -> T {
+        self[i]
+    }
+
+    #[inline(always)]
+    fn set_component(&mut self, i: usize, value: T) {
+        self[i] = value;
+    }
+
+    #[inline(always)]
+    fn zero() -> Self {
+        SMatrix::zeros()
+    }
+
+    #[inline(always)]
+    fn add_scaled(&mut self, weight: T, other: Self) {
+        *self += other * weight;
+    }
+}
+
+/// Mass and linear momentum, or their densities, mapped together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MassMomentum<T, const D: usize> {
+    /// Mass (kg), or mass density where a density is mapped.
+    pub mass: T,
+    /// Linear momentum (kg m/s), or its density.
+    pub momentum: SVector<T, D>,
+}
+
+impl<T: Scalar, const D: usize> Field<T> for MassMomentum<T, D> {
+    const COMPONENTS: usize = 1 + D;
+
+    #[inline(always)]
+    fn component(&self, i: usize) -> T {
+        if i == 0 { self.mass } else { self.momentum[i - 1] }
+    }
+
+    #[inline(always)]
+    fn set_component(&mut self, i: usize, value: T) {
+        if i == 0 {
+            self.mass = value;
+        } else {
+            self.momentum[i - 1] = value;
+        }
+    }
+
+    #[inline(always)]
+    fn zero() -> Self {
+        Self {
+            mass: T::zero(),
+            momentum: SVector::zeros(),
+        }
+    }
+
+    #[inline(always)]
+    fn add_scaled(&mut self, weight: T, other: Self) {
+        self.mass += weight * other.mass;
+        self.momentum += other.momentum * weight;
+    }
+}

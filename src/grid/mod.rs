@@ -1,0 +1,215 @@
+//! The fixed background grid: a box of equal cells.
+
+mod face;
+
+pub use face::{Face, Side};
+
+use nalgebra::SVector;
+
+use crate::error::GridError;
+use crate::scalar::Scalar;
+
+/// Index of a cell along each axis.
+pub type Cell<const D: usize> = [u32; D];
+
+/// A box `[min, max]` cut into equal cells, `D` axes.
+///
+/// Along one axis the edges are `min + (max - min) i / n`; a point on an inner edge belongs to the cell on
+/// its right, and the last cell is closed on both sides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid<T, const D: usize> {
+    min: SVector<T, D>,
+    max: SVector<T, D>,
+    cells: [usize; D],
+    cell_size: SVector<T, D>,
+    inverse_cell_size: SVector<T, D>,
+}
+
+impl<T: Scalar, const D: usize> Grid<T, D> {
+    /// A grid over `[min, max]` (m) with `cells` cells along each axis.
+    ///
+    /// # Errors
+    /// If a bound is not finite, `max <= min`, an axis has no cell, or there are 2^32 cells or more.
+    pub fn new(min: SVector<T, D>, max: SVector<T, D>, cells: [usize; D]) -> Result<Self, GridError> {
+        for axis in 0..D {
+            let (low, high) = (min[axis], max[axis]);
+            if !low.is_finite() || !high.is_finite() {
+                return Err(GridError::NotFinite { axis });
+            }
+            if high <= low {
+                return Err(GridError::Empty {
+                    axis,
+                    min: low.primal(),
+                    max: high.primal(),
+                });
+            }
+            if cells[axis] == 0 {
+                return Err(GridError::NoCells { axis });
+            }
+        }
+        let total = cells.iter().try_fold(1_usize, |n, &c| n.checked_mul(c));
+        if total.is_none_or(|n| n >= u32::MAX as usize) {
+            return Err(GridError::TooManyCells);
+        }
+        let cell_size = SVector::from_fn(|a, _| (max[a] - min[a]) / T::count(cells[a]));
+        Ok(Self {
+            min,
+            max,
+            cells,
+            cell_size,
+            inverse_cell_size: cell_size.map(|h| T::one() / h),
+        })
+    }
+
+    /// Lower corner (m).
+    pub fn min(&self) -> &SVector<T, D> {
+        &self.min
+    }
+
+    /// Upper corner (m).
+    pub fn max(&self) -> &SVector<T, D> {
+        &self.max
+    }
+
+    /// Cells along each axis.
+    pub fn cells(&self) -> [usize; D] {
+        self.cells
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.cells.iter().product()
+    }
+
+    /// Size `h` of a cell along each axis (m).
+    #[inline(always)]
+    pub fn cell_size(&self) -> &SVector<T, D> {
+        &self.cell_size
+    }
+
+    /// `1 / h` along each axis (1/m).
+    #[inline(always)]
+    pub fn inverse_cell_size(&self) -> &SVector<T, D> {
+        &self.inverse_cell_size
+    }
+
+    /// Volume of a cell (1-D: m, 2-D: m2, 3-D: m3).
+    #[inline(always)]
+    pub fn cell_volume(&self) -> T {
+        self.cell_size.iter().fold(T::one(), |v, &h| v * h)
+    }
+
+    /// Position (m) of edge `i` along an axis, `0 <= i <= cells`.
+    #[inline(always)]
+    pub fn edge(&self, axis: usize, i: usize) -> T {
+        if i == self.cells[axis] {
+            return self.max[axis];
+        }
+        let extent = self.max[axis] - self.min[axis];
+        self.min[axis] + extent * T::count(i) / T::count(self.cells[axis])
+    }
+
+    /// Centre of a cell (m).
+    #[inline(always)]
+    pub fn centre(&self, cell: &Cell<D>) -> SVector<T, D> {
+        let half = T::one() / T::lit(2.0);
+        SVector::from_fn(|a, _| self.min[a] + (T::lit(f64::from(cell[a])) + half) * self.cell_size[a])
+    }
+
+    /// The cell that holds `x`, `None` outside the grid (or if `x` is not a number).
+    #[inline]
+    pub fn locate(&self, x: &SVector<T, D>) -> Option<Cell<D>> {
+        let mut cell = [0; D];
+        for axis in 0..D {
+            cell[axis] = self.locate_on_axis(axis, x[axis])?;
+        }
+        Some(cell)
+    }
+
+    #[inline]
+    fn locate_on_axis(&self, axis: usize, x: T) -> Option<u32> {
+        let (low, high) = (self.min[axis], self.max[axis]);
+        if !(x >= low && x <= high) {
+            return None;
+        }
+        let last = self.cells[axis] - 1;
+        // The value part alone decides: a dual number has no floor.
+        let scaled = ((x - low) * self.inverse_cell_size[axis]).primal();
+        let mut i = (scaled as usize).min(last);
+        // Rounding of the quotient may put a point at an edge into the neighbour.
+        if i < last && x >= self.edge(axis, i + 1) {
+            i += 1;
+        } else if i > 0 && x < self.edge(axis, i) {
+            i -= 1;
+        }
+        Some(i as u32)
+    }
+
+    /// Number of a cell, axis 0 fastest.
+    #[inline(always)]
+    pub fn linear(&self, cell: &Cell<D>) -> usize {
+        let mut index = 0;
+        for axis in (0..D).rev() {
+            index = index * self.cells[axis] + cell[axis] as usize;
+        }
+        index
+    }
+
+    /// The cell with number `index`: the inverse of [`Grid::linear`].
+    #[inline(always)]
+    pub fn cell(&self, mut index: usize) -> Cell<D> {
+        let mut cell = [0; D];
+        for axis in 0..D {
+            cell[axis] = (index % self.cells[axis]) as u32;
+            index /= self.cells[axis];
+        }
+        cell
+    }
+
+    /// Coordinate of `x` within its cell along an axis: 0 at the left edge, 1 at the right one.
+    #[inline(always)]
+    pub fn unit_coordinate(&self, axis: usize, cell: u32, x: T) -> T {
+        (x - self.min[axis]) * self.inverse_cell_size[axis] - T::lit(f64::from(cell))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::vector;
+
+    #[test]
+    fn a_point_on_an_inner_edge_belongs_to_the_right_cell_and_the_last_cell_is_closed() {
+        for n in [1, 3, 7, 10, 40, 49] {
+            let grid = Grid::new(vector![0.0], vector![1.0], [n]).unwrap();
+            for i in 0..n {
+                assert_eq!(grid.locate(&vector![grid.edge(0, i)]), Some([i as u32]));
+            }
+            assert_eq!(grid.locate(&vector![1.0]), Some([n as u32 - 1]));
+        }
+    }
+
+    #[test]
+    fn a_point_outside_or_not_a_number_has_no_cell() {
+        let grid = Grid::new(vector![-1.0, 0.0], vector![1.0, 2.0], [4, 5]).unwrap();
+        for x in [vector![-1.1, 1.0], vector![0.0, 2.1], vector![f64::NAN, 1.0]] {
+            assert_eq!(grid.locate(&x), None);
+        }
+    }
+
+    #[test]
+    fn cell_numbers_invert() {
+        let grid = Grid::new(vector![0.0, 0.0, 0.0], vector![1.0, 2.0, 3.0], [2, 3, 4]).unwrap();
+        for i in 0..grid.cell_count() {
+            assert_eq!(grid.linear(&grid.cell(i)), i);
+        }
+    }
+
+    #[test]
+    fn bad_bounds_are_refused() {
+        assert!(Grid::new(vector![0.0], vector![0.0], [1]).is_err());
+        assert!(Grid::new(vector![0.0], vector![f64::NAN], [1]).is_err());
+        assert!(Grid::new(vector![0.0], vector![1.0], [0]).is_err());
+        assert!(Grid::new(vector![0.0, 0.0], vector![1.0, 1.0], [1 << 40, 1 << 40]).is_err());
+    }
+}

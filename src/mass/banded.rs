@@ -1,0 +1,233 @@
+//! Symmetric banded matrices.
+
+use nalgebra::SVector;
+
+use crate::scalar::Scalar;
+
+/// A symmetric matrix of order `n` with half band width `w`: entries `(i, j)` with `|i - j| <= w`, the lower
+/// half stored by rows. Factorised in place as `L D L^T`, `O(n w^2)`; solved in `O(n w)`.
+///
+/// A mass matrix of a fit need not be positive definite (a fitted density may be negative somewhere), which
+/// `L D L^T` does not mind as long as no pivot vanishes.
+#[derive(Clone, Debug)]
+pub struct Banded<T> {
+    order: usize,
+    half_band: usize,
+    rows: Vec<T>,
+}
+
+impl<T: Scalar> Banded<T> {
+    /// The zero matrix.
+    pub fn zeros(order: usize, half_band: usize) -> Self {
+        Self {
+            order,
+            half_band,
+            rows: vec![T::zero(); order * (half_band + 1)],
+        }
+    }
+
+    /// Number of stored entries.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether the matrix has order zero.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Sets every entry to zero.
+    pub fn clear(&mut self) {
+        self.rows.fill(T::zero());
+    }
+
+    #[inline(always)]
+    fn at(&self, i: usize, j: usize) -> usize {
+        i * (self.half_band + 1) + j + self.half_band - i
+    }
+
+    /// Adds to the entry `(i, j)` of the lower half, `j <= i <= j + half_band`; entries of the upper half are
+    /// left out, since they are the same.
+    #[inline(always)]
+    pub fn add(&mut self, i: usize, j: usize, value: T) {
+        if j <= i {
+            let at = self.at(i, j);
+            self.rows[at] += value;
+        }
+    }
+
+    /// Makes the matrix a copy of `other`.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.order = other.order;
+        self.half_band = other.half_band;
+        self.rows.clone_from(&other.rows);
+    }
+
+    /// Prescribes component `axis` of unknown `c`: moves its known part to the right-hand side and replaces its
+    /// equation by `x_c = value`.
+    pub fn prescribe<const D: usize>(
+        &mut self,
+        c: usize,
+        axis: usize,
+        value: T,
+        right: &mut [SVector<T, D>],
+    ) {
+        for j in c.saturating_sub(self.half_band)..(c + self.half_band + 1).min(self.order) {
+            let at = self.at(c.max(j), c.min(j));
+            if j == c {
+                self.rows[at] = T::one();
+                right[c][axis] = value;
+            } else {
+                right[j][axis] -= self.rows[at] * value;
+                self.rows[at] = T::zero();
+            }
+        }
+    }
+
+    /// Sum of all entries of the symmetric matrix.
+    pub fn total(&self) -> T {
+        let width = self.half_band + 1;
+        let (mut lower, mut diagonal) = (T::zero(), T::zero());
+        for row in self.rows.chunks_exact(width) {
+            for &entry in &row[..width - 1] {
+                lower += entry;
+            }
+            diagonal += row[width - 1];
+        }
+        diagonal + lower + lower
+    }
+
+    /// Factorises in place. A pivot that vanishes against the matrix's largest entry marks a DOF that no
+    /// mass reaches: it is cut off, and [`Banded::solve`] returns zero for it.
+    pub fn factorise(&mut self) {
+        let largest = self.rows.iter().fold(T::zero(), |m, &r| m.max(r.abs()));
+        let negligible = largest * T::default_epsilon() * T::default_epsilon();
+        for i in 0..self.order {
+            let first = i.saturating_sub(self.half_band);
+            for j in first..=i {
+                let low = first.max(j.saturating_sub(self.half_band));
+                let mut sum = self.rows[self.at(i, j)];
+                for k in low..j {
+                    sum -= self.rows[self.at(i, k)] * self.rows[self.at(j, k)] * self.rows[self.at(k, k)];
+                }
+                let at = self.at(i, j);
+                if j < i {
+                    let pivot = self.rows[self.at(j, j)];
+                    // A cut-off DOF has a pivot of zero and passes nothing on.
+                    self.rows[at] = if pivot == T::zero() {
+                        T::zero()
+                    } else {
+                        sum / pivot
+                    };
+                } else {
+                    self.rows[at] = if sum.abs() <= negligible { T::zero() } else { sum };
+                }
+            }
+        }
+    }
+
+    /// Solves for component `axis` with the factorised matrix.
+    pub fn solve<const D: usize>(&self, x: &mut [SVector<T, D>], axis: usize) {
+        let order = self.order.min(x.len());
+        for i in 0..order {
+            for j in i.saturating_sub(self.half_band)..i {
+                let below = x[j][axis] * self.rows[self.at(i, j)];
+                x[i][axis] -= below;
+            }
+        }
+        for i in (0..order).rev() {
+            let pivot = self.rows[self.at(i, i)];
+            x[i][axis] = if pivot == T::zero() {
+                T::zero()
+            } else {
+                x[i][axis] / pivot
+            };
+            for k in i + 1..(i + self.half_band + 1).min(order) {
+                let above = x[k][axis] * self.rows[self.at(k, i)];
+                x[i][axis] -= above;
+            }
+        }
+    }
+
+    /// Product with `x` of the matrix before it is factorised.
+    pub fn multiply<const D: usize>(&self, x: &[SVector<T, D>]) -> Vec<SVector<T, D>> {
+        let mut y = vec![SVector::zeros(); self.order];
+        for i in 0..self.order {
+            for j in i.saturating_sub(self.half_band)..=i {
+                let entry = self.rows[self.at(i, j)];
+                y[i] += x[j] * entry;
+                if j < i {
+                    y[j] += x[i] * entry;
+                }
+            }
+        }
+        y
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, vector};
+
+    fn sample(n: usize, w: usize) -> (Banded<f64>, DMatrix<f64>) {
+        let mut banded = Banded::zeros(n, w);
+        let mut dense = DMatrix::zeros(n, n);
+        for i in 0..n {
+            for j in i.saturating_sub(w)..=i {
+                let entry = if i == j {
+                    4.0 + i as f64
+                } else {
+                    ((i * 7 + j * 3) % 5) as f64 - 2.0
+                };
+                banded.add(i, j, entry);
+                dense[(i, j)] = entry;
+                dense[(j, i)] = entry;
+            }
+        }
+        (banded, dense)
+    }
+
+    #[test]
+    fn it_solves_what_a_dense_factorisation_solves() {
+        for (n, w) in [(1, 0), (5, 1), (9, 3), (4, 3)] {
+            let (mut banded, dense) = sample(n, w);
+            let right: Vec<_> = (0..n).map(|i| vector![i as f64 - 1.0, 2.0]).collect();
+            assert!((banded.total() - dense.sum()).abs() < 1e-12);
+            let mut x = right.clone();
+            banded.factorise();
+            banded.solve(&mut x, 0);
+            banded.solve(&mut x, 1);
+            for c in 0..2 {
+                let b = nalgebra::DVector::from_fn(n, |i, _| right[i][c]);
+                let exact = dense.clone().lu().solve(&b).unwrap();
+                for i in 0..n {
+                    assert!((x[i][c] - exact[i]).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_dof_without_mass_is_cut_off_and_the_rest_is_solved() {
+        let (_, dense) = sample(6, 2);
+        let mut x = vec![vector![1.0]; 6];
+        let mut cut = Banded::zeros(6, 2);
+        for i in 0..6_usize {
+            for j in i.saturating_sub(2)..=i {
+                if i != 3 && j != 3 {
+                    cut.add(i, j, dense[(i, j)]);
+                }
+            }
+        }
+        x[3] = vector![0.0];
+        let right = x.clone();
+        let unfactorised = cut.clone();
+        cut.factorise();
+        cut.solve(&mut x, 0);
+        assert_eq!(x[3][0], 0.0);
+        for (a, b) in unfactorised.multiply(&x).iter().zip(&right) {
+            assert!((a - b).norm() < 1e-13);
+        }
+    }
+}

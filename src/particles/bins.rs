@@ -1,0 +1,132 @@
+//! Which cell holds which particles.
+
+use nalgebra::SVector;
+
+use crate::grid::{Cell, Grid};
+use crate::scalar::Scalar;
+
+/// A particle that is in no cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outside(pub usize);
+
+/// The cell of every particle, and the particles of every cell.
+#[derive(Clone, Debug, Default)]
+pub struct Bins<const D: usize> {
+    cell_of: Vec<Cell<D>>,
+    start: Vec<u32>,
+    order: Vec<u32>,
+    occupied: Vec<u32>,
+    lists_are_stale: bool,
+}
+
+impl<const D: usize> Bins<D> {
+    /// Cells and lists of `positions`.
+    ///
+    /// # Errors
+    /// [`Outside`] names the first particle that is not in the grid.
+    pub fn new<T: Scalar>(grid: &Grid<T, D>, positions: &[SVector<T, D>]) -> Result<Self, Outside> {
+        let mut bins = Self {
+            cell_of: vec![[u32::MAX; D]; positions.len()],
+            start: vec![0; grid.cell_count() + 1],
+            order: vec![0; positions.len()],
+            occupied: Vec::with_capacity(grid.cell_count()),
+            lists_are_stale: true,
+        };
+        bins.locate(grid, positions)?;
+        bins.list(grid);
+        Ok(bins)
+    }
+
+    /// Looks every particle's cell up again and returns how many changed theirs.
+    ///
+    /// # Errors
+    /// [`Outside`] names the first particle that is not in the grid.
+    pub fn locate<T: Scalar>(
+        &mut self,
+        grid: &Grid<T, D>,
+        positions: &[SVector<T, D>],
+    ) -> Result<usize, Outside> {
+        let mut crossings = 0;
+        for (p, (old, x)) in self.cell_of.iter_mut().zip(positions).enumerate() {
+            let cell = grid.locate(x).ok_or(Outside(p))?;
+            crossings += usize::from(cell != *old);
+            *old = cell;
+        }
+        self.lists_are_stale |= crossings > 0;
+        Ok(crossings)
+    }
+
+    /// Brings the lists per cell up to date (a counting sort, only after a particle changed its cell).
+    pub fn list<T: Scalar>(&mut self, grid: &Grid<T, D>) {
+        if !self.lists_are_stale {
+            return;
+        }
+        self.lists_are_stale = false;
+        self.start.fill(0);
+        for cell in &self.cell_of {
+            self.start[grid.linear(cell) + 1] += 1;
+        }
+        self.occupied.clear();
+        for c in 0..grid.cell_count() {
+            if self.start[c + 1] > 0 {
+                self.occupied.push(c as u32);
+            }
+            self.start[c + 1] += self.start[c];
+        }
+        for (p, cell) in self.cell_of.iter().enumerate() {
+            let next = &mut self.start[grid.linear(cell)];
+            self.order[*next as usize] = p as u32;
+            *next += 1;
+        }
+        // Filling advanced every start to its cell's end: shift them back.
+        self.start.rotate_right(1);
+        self.start[0] = 0;
+    }
+
+    /// Cell of particle `p`.
+    #[inline(always)]
+    pub fn cell_of(&self, p: usize) -> &Cell<D> {
+        &self.cell_of[p]
+    }
+
+    /// Particles of the cell with number `cell`, in ascending order, as of the last [`Bins::list`].
+    #[inline(always)]
+    pub fn particles_in(&self, cell: usize) -> &[u32] {
+        &self.order[self.start[cell] as usize..self.start[cell + 1] as usize]
+    }
+
+    /// Numbers of the cells that hold a particle, ascending.
+    pub fn occupied(&self) -> &[u32] {
+        &self.occupied
+    }
+
+    /// Bytes per particle, whatever the dimension's number of cells.
+    pub fn bytes_per_particle() -> usize {
+        size_of::<Cell<D>>() + size_of::<u32>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::vector;
+
+    #[test]
+    fn lists_hold_every_particle_once_and_follow_a_crossing() {
+        let grid = Grid::new(vector![0.0], vector![4.0], [4]).unwrap();
+        let mut x = vec![vector![3.5], vector![0.5], vector![0.2], vector![1.0]];
+        let mut bins = Bins::new(&grid, &x).unwrap();
+        assert_eq!(bins.particles_in(0), &[1, 2]);
+        assert_eq!(bins.particles_in(1), &[3]);
+        assert_eq!(bins.particles_in(2), &[] as &[u32]);
+        assert_eq!(bins.occupied(), &[0, 1, 3]);
+        x[1][0] = 2.5;
+        assert_eq!(bins.locate(&grid, &x), Ok(1));
+        bins.list(&grid);
+        assert_eq!(bins.particles_in(0), &[2]);
+        assert_eq!(bins.particles_in(2), &[1]);
+        assert_eq!(bins.occupied(), &[0, 1, 2, 3]);
+        x[3][0] = -0.1;
+        assert_eq!(bins.locate(&grid, &x), Err(Outside(3)));
+    }
+}

@@ -1,0 +1,148 @@
+//! Material points: what they carry, how a body is filled with them, which cell holds them.
+
+mod bins;
+mod lattice;
+
+pub use bins::{Bins, Outside};
+pub use lattice::lattice;
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::error::SetupError;
+use crate::scalar::Scalar;
+
+/// Particle data, one array per quantity. `S` is the law's state and `P` the second phase's data per
+/// particle; both are `()` where nothing is needed and then take no memory.
+#[derive(Clone, Debug, Default)]
+pub struct Particles<T, const D: usize, S = (), P = ()> {
+    /// Position at the start (m).
+    pub initial_position: Vec<SVector<T, D>>,
+    /// Position (m).
+    pub position: Vec<SVector<T, D>>,
+    /// Displacement (m). Carried beside the position because `x - x0` loses the digits of a small one.
+    pub displacement: Vec<SVector<T, D>>,
+    /// Velocity (m/s); it lives half a step before the position (Euler-Cromer).
+    pub velocity: Vec<SVector<T, D>>,
+    /// Cauchy stress, tension positive (Pa).
+    pub stress: Vec<SMatrix<T, D, D>>,
+    /// Mass (1-D: kg/m2, 2-D: kg/m, 3-D: kg), constant.
+    pub mass: Vec<T>,
+    /// Volume (1-D: m, 2-D: m2, 3-D: m3).
+    pub volume: Vec<T>,
+    /// State of the constitutive law.
+    pub state: Vec<S>,
+    /// Data of the second phase.
+    pub phase: Vec<P>,
+}
+
+impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<T, D, S, P> {
+    /// Particles at rest and free of stress.
+    ///
+    /// `points` gives position (m) and volume of each, `density` is the common mass density (kg/m3).
+    pub fn at_rest(points: &[(SVector<T, D>, T)], density: T) -> Self {
+        let n = points.len();
+        let position: Vec<_> = points.iter().map(|p| p.0).collect();
+        Self {
+            initial_position: position.clone(),
+            position,
+            displacement: vec![SVector::zeros(); n],
+            velocity: vec![SVector::zeros(); n],
+            stress: vec![SMatrix::zeros(); n],
+            mass: points.iter().map(|p| p.1 * density).collect(),
+            volume: points.iter().map(|p| p.1).collect(),
+            state: vec![S::default(); n],
+            phase: vec![P::default(); n],
+        }
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Whether there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+
+    /// Mass density of a particle (kg/m3).
+    #[inline(always)]
+    pub fn density(&self, p: usize) -> T {
+        self.mass[p] / self.volume[p]
+    }
+
+    /// Bytes that one particle takes in these arrays.
+    pub fn bytes_per_particle() -> usize {
+        4 * size_of::<SVector<T, D>>()
+            + size_of::<SMatrix<T, D, D>>()
+            + 2 * size_of::<T>()
+            + size_of::<S>()
+            + size_of::<P>()
+    }
+
+    /// Checks lengths and values.
+    ///
+    /// # Errors
+    /// If there is no particle, an array's length differs, a number is not finite, or a mass or volume is
+    /// not positive.
+    pub fn validate(&self) -> Result<(), SetupError> {
+        if self.is_empty() {
+            return Err(SetupError::NoParticles);
+        }
+        self.validate_lengths()?;
+        for p in 0..self.len() {
+            self.validate_particle(p)?;
+        }
+        Ok(())
+    }
+
+    fn validate_lengths(&self) -> Result<(), SetupError> {
+        let expected = self.len();
+        let lengths = [
+            ("initial_position", self.initial_position.len()),
+            ("displacement", self.displacement.len()),
+            ("velocity", self.velocity.len()),
+            ("stress", self.stress.len()),
+            ("mass", self.mass.len()),
+            ("volume", self.volume.len()),
+            ("state", self.state.len()),
+            ("phase", self.phase.len()),
+        ];
+        match lengths.into_iter().find(|&(_, found)| found != expected) {
+            Some((name, found)) => Err(SetupError::Lengths {
+                name,
+                found,
+                expected,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    fn validate_particle(&self, particle: usize) -> Result<(), SetupError> {
+        let refuse = |name, value: T, allowed| SetupError::Value {
+            particle,
+            name,
+            value: value.primal(),
+            allowed,
+        };
+        for (name, value) in [("mass", self.mass[particle]), ("volume", self.volume[particle])] {
+            if !value.is_finite() || value <= T::zero() {
+                return Err(refuse(name, value, "it must be positive and finite"));
+            }
+        }
+        let vectors = [
+            ("position", &self.position[particle]),
+            ("displacement", &self.displacement[particle]),
+            ("velocity", &self.velocity[particle]),
+        ];
+        for (name, vector) in vectors {
+            if let Some(&bad) = vector.iter().find(|v| !v.is_finite()) {
+                return Err(refuse(name, bad, "it must be finite"));
+            }
+        }
+        match self.stress[particle].iter().find(|s| !s.is_finite()) {
+            Some(&bad) => Err(refuse("stress", bad, "it must be finite")),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Reconstructions: from particle data to quadrature points with weights and values.
+//!
+//! A reconstruction streams *points with weighted values*; the weak form sums `weighted value * phi_i` or
+//! `weighted value * grad phi_i` and never knows where the points came from. Shepard streams the particles
+//! themselves, Taylor least squares and the cubic spline stream Gauss points.
+
+mod shepard;
+mod spline;
+mod taylor;
+
+pub use shepard::Shepard;
+pub use spline::CubicSpline;
+pub use taylor::Taylor;
+
+use nalgebra::SVector;
+
+use crate::field::Field;
+use crate::grid::{Cell, Grid};
+use crate::particles::Bins;
+use crate::scalar::Scalar;
+
+/// Where the particles are: all that a reconstruction needs to know besides the values.
+#[derive(Clone, Copy, Debug)]
+pub struct Cloud<'a, T, const D: usize> {
+    /// The grid.
+    pub grid: &'a Grid<T, D>,
+    /// Cells of the particles.
+    pub bins: &'a Bins<D>,
+    /// Positions (m).
+    pub positions: &'a [SVector<T, D>],
+    /// Volumes (1-D: m, 2-D: m2, 3-D: m3).
+    pub volumes: &'a [T],
+}
+
+/// A point of the stream.
+#[derive(Clone, Copy, Debug)]
+pub struct Point<T, const D: usize> {
+    /// Cell that holds it.
+    pub cell: Cell<D>,
+    /// Position (m).
+    pub position: SVector<T, D>,
+}
+
+/// Turns particle data into quadrature points with weighted values.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not reconstruct scalar `{T}` in `{D}` dimensions",
+    note = "CubicSpline is global and exists in 1-D only; Taylor<T, D, NB> takes NB = 3, 6, 10 for D = 1, 2, 3"
+)]
+pub trait Reconstruction<T: Scalar, const D: usize> {
+    /// Whether [`Reconstruction::integrate`] streams the particles. They move, so there the basis gives
+    /// gradients made for that ([`crate::basis::BasisFamily::for_each`]).
+    const FIELDS_AT_PARTICLES: bool;
+
+    /// Whether [`Reconstruction::integrate_conserved`] streams the particles. The mass of the DOFs is then the
+    /// sum over the particles and always lumped.
+    const AMOUNTS_AT_PARTICLES: bool;
+
+    /// Takes in the geometry. Every field streamed until the next call shares it.
+    fn prepare(&mut self, cloud: &Cloud<'_, T, D>);
+
+    /// Streams a field given by its `value` at each particle (stress): sums of weighted values approximate
+    /// integrals.
+    fn integrate<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        value: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<T, D>, Q),
+    );
+
+    /// Streams a density given by the `amount` of it that each particle holds (mass, momentum).
+    /// Conservative reconstructions keep the sum of the amounts, in every cell and to round-off.
+    fn integrate_conserved<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        amount: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<T, D>, Q),
+    );
+
+    /// Cells that hold particles but, at the last [`Reconstruction::prepare`], could not be fitted with
+    /// the full set of functions.
+    fn reduced_cells(&self) -> usize {
+        0
+    }
+
+    /// Bytes of its own per occupied cell and per particle, for the user's information.
+    fn bytes(&self) -> usize {
+        0
+    }
+}

@@ -1,0 +1,49 @@
+//! Shepard: the mapping of the plain material point method.
+
+use super::{Cloud, Point, Reconstruction};
+use crate::field::Field;
+use crate::scalar::Scalar;
+
+/// Streams the particles themselves with their volumes as weights: plain MPM (Sulsky, Chen & Schreyer
+/// 1994), which Sulsky & Gong (2016) recognised as Shepard interpolation. Keeps mass and momentum.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Shepard;
+
+impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
+    const FIELDS_AT_PARTICLES: bool = true;
+    const AMOUNTS_AT_PARTICLES: bool = true;
+
+    fn prepare(&mut self, _cloud: &Cloud<'_, T, D>) {}
+
+    #[inline(always)]
+    fn integrate<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        value: impl Fn(usize) -> Q,
+        mut sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        for (p, position) in cloud.positions.iter().enumerate() {
+            let point = Point {
+                cell: *cloud.bins.cell_of(p),
+                position: *position,
+            };
+            sink(&point, value(p).scaled(cloud.volumes[p]));
+        }
+    }
+
+    #[inline(always)]
+    fn integrate_conserved<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        amount: impl Fn(usize) -> Q,
+        mut sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        for (p, position) in cloud.positions.iter().enumerate() {
+            let point = Point {
+                cell: *cloud.bins.cell_of(p),
+                position: *position,
+            };
+            sink(&point, amount(p));
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Taylor least squares.
+
+use nalgebra::SVector;
+
+use super::{Cloud, Point, Reconstruction};
+use crate::field::Field;
+use crate::grid::Cell;
+use crate::quadrature::gauss_legendre;
+use crate::scalar::Scalar;
+use crate::taylor::{CellFit, DEFAULT_TOLERANCE_FACTOR, taylor_functions};
+
+/// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell a polynomial of `NB` Taylor functions
+/// through the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3 dimensions.
+///
+/// Fields (stress) are fitted freely; densities (mass, momentum) keep the cell's integral, because their
+/// first coefficient is the cell's amount over its volume (journal, equation 14). A cell never uses more
+/// functions than it has particles, nor one that its layout cannot tell from the others.
+#[derive(Clone, Debug)]
+pub struct Taylor<T, const D: usize, const NB: usize> {
+    rule: Vec<Node<T, D, NB>>,
+    tolerance: T,
+    cells: Vec<CellFits<T, NB>>,
+    reduced: usize,
+}
+
+/// A Gauss point of the reference cell: local coordinates, weight as share of the cell, Taylor functions.
+#[derive(Clone, Debug)]
+struct Node<T, const D: usize, const NB: usize> {
+    s: SVector<T, D>,
+    share: T,
+    psi: SVector<T, NB>,
+}
+
+#[derive(Clone, Debug)]
+struct CellFits<T, const NB: usize> {
+    free: CellFit<T, NB>,
+    conserved: CellFit<T, NB>,
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> Default for Taylor<T, D, NB> {
+    fn default() -> Self {
+        Self::with_gauss_points(2)
+    }
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
+    /// The method as published: two Gauss points per cell and axis.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// For a basis of degree `degree`: two Gauss points per cell and axis as published for degrees 1 and 2,
+    /// `degree + 1` beyond. Two points would make a cubic basis lose an order in the stress, because they
+    /// integrate its mass matrix too crudely.
+    pub fn for_degree(degree: usize) -> Self {
+        Self::with_gauss_points(if degree > 2 { degree + 1 } else { 2 })
+    }
+
+    /// With `n >= 1` Gauss points per cell and axis. Two integrate the quadratic fit exactly.
+    pub fn with_gauss_points(n: usize) -> Self {
+        let line = gauss_legendre::<T>(n.max(1));
+        let two = T::lit(2.0);
+        let rule = (0..line.len().pow(D as u32))
+            .map(|mut index| {
+                let mut share = T::one();
+                let s = SVector::from_fn(|_, _| {
+                    let (x, w) = line[index % line.len()];
+                    index /= line.len();
+                    share *= w / two;
+                    x
+                });
+                let psi = taylor_functions(&s);
+                Node { s, share, psi }
+            })
+            .collect();
+        Self {
+            rule,
+            tolerance: T::lit(DEFAULT_TOLERANCE_FACTOR) * T::default_epsilon().sqrt(),
+            cells: Vec::new(),
+            reduced: 0,
+        }
+    }
+
+    /// Drops a function of which, on a cell's particles, less than the share `tolerance` is independent of the
+    /// functions before it. The default, four times the root of the machine epsilon, drops only what round-off
+    /// would decide; larger values smooth.
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: T) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// Coefficients of the conserved fit in every occupied cell, ascending, from the amounts (the fit's mean
+    /// is the cell's sum of amounts over its volume).
+    pub fn conserved_coefficients<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        amount: impl Fn(usize) -> Q,
+    ) -> Vec<[Q; NB]> {
+        let volume = cloud.grid.cell_volume();
+        self.each_cell(cloud)
+            .map(|(cell, fits)| conserved(fits, cloud, cell, volume, &amount))
+            .collect()
+    }
+
+    /// Coefficients in every occupied cell, ascending, of the fit through the `value`s whose mean is `mean(cell)`.
+    pub fn coefficients_with_mean<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        value: impl Fn(usize) -> Q,
+        mean: impl Fn(&Cell<D>) -> Q,
+    ) -> Vec<[Q; NB]> {
+        self.each_cell(cloud)
+            .map(|(cell, fits)| {
+                let mean = mean(&cloud.grid.cell(cell));
+                fit_about_mean(fits, cloud, cell, &value, mean)
+            })
+            .collect()
+    }
+
+    /// Coefficients of the free fit in every occupied cell, ascending.
+    pub fn free_coefficients<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        value: impl Fn(usize) -> Q,
+    ) -> Vec<[Q; NB]> {
+        self.each_cell(cloud)
+            .map(|(cell, fits)| fits.free.coefficients(samples(cloud, cell, &value), Q::zero()))
+            .collect()
+    }
+
+    fn each_cell(&self, cloud: &Cloud<'_, T, D>) -> impl Iterator<Item = (usize, &CellFits<T, NB>)> {
+        cloud.bins.occupied().iter().map(|&c| c as usize).zip(&self.cells)
+    }
+
+    #[inline(always)]
+    fn emit<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cell: usize,
+        coefficients: &[Q; NB],
+        sink: &mut impl FnMut(&Point<T, D>, Q),
+    ) {
+        let volume = cloud.grid.cell_volume();
+        let half = cloud.grid.cell_size() / T::lit(2.0);
+        let cell = cloud.grid.cell(cell);
+        let centre = cloud.grid.centre(&cell);
+        for node in &self.rule {
+            let mut value = Q::zero();
+            // Highest function first: the mean, usually the largest part, is rounded last.
+            for k in (0..NB).rev() {
+                value.add_scaled(node.psi[k], coefficients[k]);
+            }
+            let position = centre + half.component_mul(&node.s);
+            sink(&Point { cell, position }, value.scaled(volume * node.share));
+        }
+    }
+}
+
+/// Local coordinates of the particles of a cell.
+#[inline(always)]
+fn local<'a, T: Scalar, const D: usize>(
+    cloud: &Cloud<'a, T, D>,
+    cell: usize,
+) -> impl Iterator<Item = (usize, SVector<T, D>)> + Clone + 'a {
+    let centre = cloud.grid.centre(&cloud.grid.cell(cell));
+    let scale = cloud.grid.inverse_cell_size() * T::lit(2.0);
+    let positions = cloud.positions;
+    cloud.bins.particles_in(cell).iter().map(move |&p| {
+        let p = p as usize;
+        (p, (positions[p] - centre).component_mul(&scale))
+    })
+}
+
+#[inline(always)]
+fn samples<'a, T: Scalar, const D: usize, Q: Field<T>>(
+    cloud: &Cloud<'a, T, D>,
+    cell: usize,
+    value: &'a impl Fn(usize) -> Q,
+) -> impl Iterator<Item = (SVector<T, D>, Q)> + 'a {
+    local(cloud, cell).map(move |(p, s)| (s, value(p)))
+}
+
+#[inline(always)]
+fn conserved<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
+    fits: &CellFits<T, NB>,
+    cloud: &Cloud<'_, T, D>,
+    cell: usize,
+    volume: T,
+    amount: &impl Fn(usize) -> Q,
+) -> [Q; NB] {
+    let mut mean = Q::zero();
+    for &p in cloud.bins.particles_in(cell) {
+        mean.add_scaled(T::one(), amount(p as usize));
+    }
+    let mean = mean.scaled(T::one() / volume);
+    let density = |p: usize| amount(p).scaled(T::one() / cloud.volumes[p]);
+    fit_about_mean(fits, cloud, cell, &density, mean)
+}
+
+#[inline(always)]
+fn fit_about_mean<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
+    fits: &CellFits<T, NB>,
+    cloud: &Cloud<'_, T, D>,
+    cell: usize,
+    value: &impl Fn(usize) -> Q,
+    mean: Q,
+) -> [Q; NB] {
+    let mut coefficients = fits.conserved.coefficients(samples(cloud, cell, value), mean);
+    coefficients[0] = mean;
+    coefficients
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor<T, D, NB> {
+    const FIELDS_AT_PARTICLES: bool = false;
+    const AMOUNTS_AT_PARTICLES: bool = false;
+
+    fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
+        // One slot for each cell there is, so that a later step never has to allocate.
+        self.cells.clear();
+        self.cells.reserve(cloud.grid.cell_count());
+        self.reduced = 0;
+        for &cell in cloud.bins.occupied() {
+            let points = local(cloud, cell as usize).map(|(_, s)| s);
+            let free = CellFit::new(points.clone(), 0, self.tolerance);
+            let conserved = CellFit::new(points, 1, self.tolerance);
+            let full = free.functions() == NB && conserved.functions() + 1 == NB;
+            self.reduced += usize::from(!full);
+            self.cells.push(CellFits { free, conserved });
+        }
+    }
+
+    #[inline(always)]
+    fn integrate<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        value: impl Fn(usize) -> Q,
+        mut sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        for (cell, fits) in self.each_cell(cloud) {
+            let coefficients = fits.free.coefficients(samples(cloud, cell, &value), Q::zero());
+            self.emit(cloud, cell, &coefficients, &mut sink);
+        }
+    }
+
+    #[inline(always)]
+    fn integrate_conserved<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        amount: impl Fn(usize) -> Q,
+        mut sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        let volume = cloud.grid.cell_volume();
+        for (cell, fits) in self.each_cell(cloud) {
+            let coefficients = conserved(fits, cloud, cell, volume, &amount);
+            self.emit(cloud, cell, &coefficients, &mut sink);
+        }
+    }
+
+    fn reduced_cells(&self) -> usize {
+        self.reduced
+    }
+
+    fn bytes(&self) -> usize {
+        self.cells.capacity() * size_of::<CellFits<T, NB>>()
+    }
+}

@@ -1,0 +1,59 @@
+//! Exact and converged solutions of one-dimensional dynamics of a one-phase continuum, against which the errors of
+//! material point runs are measured.
+//!
+//! SI units, stresses positive in tension, `f64` throughout. Every solution is asked by *material* point: the state at
+//! time `t` of the point that was at `x0` at time 0, because that is what a material point of the method carries.
+//!
+//! | solution | nature | benchmark |
+//! |---|---|---|
+//! | [`VibratingBar`] | closed form | bar with fixed ends, small strain |
+//! | [`StaticColumn`] | closed form | column under its weight, at rest, small or large strain |
+//! | [`LagrangianBar`] | converged numerically, with an estimate of its own error | bar and column in motion, any elastic law |
+//!
+//! The benchmarks are those of Wobbes, Möller, Galavi and Vuik, *Conservative Taylor least squares reconstruction with
+//! application to material point methods*, Int. J. Numer. Methods Eng. 117 (2019), doi 10.1002/nme.5956.
+
+mod check;
+mod error;
+mod lagrangian_bar;
+mod lobatto;
+mod static_column;
+mod uniaxial_law;
+mod vibrating_bar;
+
+pub use error::ReferenceError;
+pub use lagrangian_bar::{BarProblem, End, LagrangianBar, Resolution};
+pub use static_column::{StaticColumn, Strain};
+pub use uniaxial_law::{Hill, Hyperelastic, Linear, NeoHookean, UniaxialLaw};
+pub use vibrating_bar::VibratingBar;
+
+/// State of the reference at one material point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Displacement since time 0, m.
+    pub displacement: f64,
+    /// Velocity, m/s.
+    pub velocity: f64,
+    /// Cauchy stress, Pa, positive in tension.
+    pub stress: f64,
+}
+
+/// A solution that material points can be compared with.
+///
+/// A time-dependent error should be taken at the time at which the compared quantity lives: the Euler-Cromer velocity
+/// after `n` steps belongs to the time `(n - 1/2) dt`, so it is compared after `advance((n - 0.5) * dt)`.
+pub trait Reference {
+    /// Prepares evaluation at `time`, s, at least 0.
+    ///
+    /// Calling it twice with the same time changes nothing. A closed form only remembers the time; a converged
+    /// solution marches its solver, and starts again from 0 where `time` lies before the last one.
+    ///
+    /// # Errors
+    /// [`ReferenceError::InvalidTime`] where `time` is negative or not finite; what else can go wrong is said by each
+    /// solution.
+    fn advance(&mut self, time: f64) -> Result<(), ReferenceError>;
+
+    /// State, at the time of the last [`advance`](Reference::advance), of the material point that was at `x0`, m, at
+    /// time 0. Before the first `advance` the time is 0.
+    fn at(&self, x0: f64) -> State;
+}

@@ -1,0 +1,58 @@
+//! Stage 2: accelerations of the DOFs.
+
+use super::{FaceCondition, Forcing, Stepper};
+use crate::basis::BasisFamily;
+use crate::grid::Face;
+use crate::law::ConstitutiveLaw;
+use crate::phase::Phase;
+use crate::reconstruction::Reconstruction;
+use crate::scalar::Scalar;
+use nalgebra::SVector;
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    /// Turns forces into accelerations; a DOF that no particle reaches has none.
+    pub(super) fn accelerate(&mut self, forcing: &Forcing<T, D>) {
+        for (force, &mass) in self.dofs.force.iter_mut().zip(&self.dofs.mass) {
+            *force = if mass > T::zero() {
+                *force / mass + forcing.body_force
+            } else {
+                SVector::zeros()
+            };
+        }
+        let force = &mut self.dofs.force;
+        for_each_held(&self.face_dofs, forcing, |dof, axis, _, acceleration| {
+            force[dof][axis] = acceleration;
+        });
+    }
+}
+
+/// Calls `f(dof, axis, velocity, acceleration)` for every held component of the DOFs on held faces. Where faces
+/// meet, the later one has the last word.
+pub(super) fn for_each_held<T: Scalar, const D: usize>(
+    face_dofs: &[Vec<u32>],
+    forcing: &Forcing<T, D>,
+    mut f: impl FnMut(usize, usize, T, T),
+) {
+    for (face, dofs) in Face::all::<D>().zip(face_dofs) {
+        let FaceCondition::Held {
+            held,
+            velocity,
+            acceleration,
+        } = forcing.face(face)
+        else {
+            continue;
+        };
+        for &dof in dofs {
+            for axis in (0..D).filter(|&axis| held[axis]) {
+                f(dof as usize, axis, velocity[axis], acceleration[axis]);
+            }
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The critical time step of the scheme as it stands.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::forces::internal_force;
+use super::{FaceCondition, Forcing, Stepper};
+use crate::basis::BasisFamily;
+use crate::grid::Face;
+use crate::law::ConstitutiveLaw;
+use crate::phase::Phase;
+use crate::reconstruction::{Cloud, Reconstruction};
+use crate::scalar::Scalar;
+
+/// Strain by which the law's tangent is probed.
+const PROBE_STRAIN: f64 = 1e-3;
+const LEAST_ITERATIONS: usize = 20;
+const MOST_ITERATIONS: usize = 400;
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D> + Clone,
+    L: ConstitutiveLaw<T, D> + Clone,
+    P: Phase<T, D> + Clone,
+{
+    /// Largest step (s) at which the linearised scheme does not grow, for the particles where they are.
+    ///
+    /// One step maps particle velocities to DOF velocities, strains, stress rates, forces and back to
+    /// particle accelerations: `dv/dt = -G` applied to the time integral of `v`. Euler-Cromer is stable up
+    /// to `2 / sqrt(lambda)`, `lambda` the largest eigenvalue of `G`, found here by power iteration on the
+    /// scheme's own stages, so it holds for every basis, reconstruction, mass, law and layout. `None` if
+    /// nothing resists a motion (no stiffness).
+    pub fn critical_step(&self, forcing: &Forcing<T, D>) -> Option<T> {
+        let mut probe = self.clone();
+        probe.prepare();
+        probe.lump_mass();
+        let rest = at_rest(forcing);
+        let scale = probe.probe_velocity()?;
+        let mut before = T::zero();
+        let tolerance = T::lit(1e-4);
+        for iteration in 0..MOST_ITERATIONS {
+            probe.normalise(scale)?;
+            let eigenvalue = probe.apply(&rest, scale)?;
+            let change = (eigenvalue - before).abs();
+            if iteration >= LEAST_ITERATIONS && change <= tolerance * eigenvalue / T::lit(10.0) {
+                before = eigenvalue;
+                break;
+            }
+            before = eigenvalue;
+        }
+        (before > T::zero()).then(|| T::lit(2.0) / before.sqrt())
+    }
+
+    /// Velocity that strains a cell by [`PROBE_STRAIN`] in one second.
+    fn probe_velocity(&mut self) -> Option<T> {
+        let h = self.grid.cell_size().min();
+        // A fixed sequence of signs and sizes that excites every mode.
+        let mut seed = 1_u32;
+        for v in &mut self.particles.velocity {
+            for component in v.iter_mut() {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                *component = T::lit(f64::from(seed >> 8) / f64::from(1 << 23) - 1.0);
+            }
+        }
+        h.is_finite().then(|| h * T::lit(PROBE_STRAIN))
+    }
+
+    /// Scales the particles' velocities to the root mean square `size`.
+    fn normalise(&mut self, size: T) -> Option<()> {
+        let norm = rms(&self.particles.velocity);
+        if !(norm > T::zero() && norm.is_finite()) {
+            return None;
+        }
+        for v in &mut self.particles.velocity {
+            *v *= size / norm;
+        }
+        Some(())
+    }
+
+    /// Replaces the velocities `v` by `G v` and returns `|G v| / |v|`, `|v| = size`.
+    fn apply(&mut self, rest: &Forcing<T, D>, size: T) -> Option<T> {
+        self.map_momentum();
+        self.divide_by_mass(rest);
+        let rates: Vec<_> = (0..self.particles.len()).map(|p| self.stress_rate(p)).collect();
+        let cloud = Cloud {
+            grid: &self.grid,
+            bins: &self.bins,
+            positions: &self.particles.position,
+            volumes: &self.particles.volume,
+        };
+        let (basis, force) = (&self.basis, &mut self.dofs.force);
+        internal_force(basis, &mut self.reconstruction, &cloud, |p| rates[p], force);
+        self.accelerate(rest);
+        self.particles.velocity.fill(SVector::zeros());
+        self.update_particle_velocities(-T::one());
+        let eigenvalue = rms(&self.particles.velocity) / size;
+        eigenvalue.is_finite().then_some(eigenvalue)
+    }
+
+    /// Change of a particle's total stress under the DOF velocities in one second.
+    fn stress_rate(&self, p: usize) -> SMatrix<T, D, D> {
+        let particles = &self.particles;
+        let mut gradient = SMatrix::<T, D, D>::zeros();
+        let (cell, x) = (self.bins.cell_of(p), &particles.position[p]);
+        self.basis.for_each(&self.grid, cell, x, |i, _, grad_phi| {
+            gradient += self.dofs.velocity[i] * grad_phi.transpose();
+        });
+        let (mut stress, mut state) = (particles.stress[p], particles.state[p]);
+        self.law.update(&gradient, &mut stress, &mut state);
+        if !P::COUPLED {
+            return stress - particles.stress[p];
+        }
+        let mut data = particles.phase[p];
+        self.phase.update(&gradient, &mut data);
+        self.phase.total_stress(&stress, &data)
+            - self.phase.total_stress(&particles.stress[p], &particles.phase[p])
+    }
+}
+
+/// The same constraints with every told value zero, and no load.
+fn at_rest<T: Scalar, const D: usize>(forcing: &Forcing<T, D>) -> Forcing<T, D> {
+    let mut rest = Forcing::none();
+    for face in Face::all::<D>() {
+        if let FaceCondition::Held { held, .. } = *forcing.face(face) {
+            let zero = SVector::zeros();
+            let (velocity, acceleration) = (zero, zero);
+            rest.set_face(
+                face,
+                FaceCondition::Held {
+                    held,
+                    velocity,
+                    acceleration,
+                },
+            );
+        }
+    }
+    rest
+}
+
+fn rms<T: Scalar, const D: usize>(values: &[SVector<T, D>]) -> T {
+    let sum = values.iter().fold(T::zero(), |s, v| s + v.norm_squared());
+    (sum / T::count(values.len())).sqrt()
+}

@@ -1,0 +1,96 @@
+//! Stage 1: lumped mass and forces of the DOFs.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::{FaceCondition, Forcing, Stepper};
+use crate::basis::BasisFamily;
+use crate::law::ConstitutiveLaw;
+use crate::phase::Phase;
+use crate::reconstruction::{Cloud, Reconstruction};
+use crate::scalar::Scalar;
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    pub(super) fn assemble_forces(&mut self, forcing: &Forcing<T, D>) {
+        self.lump_mass();
+        let (phase, effective, data) = (&self.phase, &self.particles.stress, &self.particles.phase);
+        let cloud = Cloud {
+            grid: &self.grid,
+            bins: &self.bins,
+            positions: &self.particles.position,
+            volumes: &self.particles.volume,
+        };
+        internal_force(
+            &self.basis,
+            &mut self.reconstruction,
+            &cloud,
+            |p| {
+                if P::COUPLED {
+                    phase.total_stress(&effective[p], &data[p])
+                } else {
+                    effective[p]
+                }
+            },
+            &mut self.dofs.force,
+        );
+        self.add_tractions(forcing);
+    }
+
+    /// `m_i = sum_p m_p phi_i`.
+    pub(super) fn lump_mass(&mut self) {
+        let mass = &mut self.dofs.mass;
+        mass.fill(T::zero());
+        for (p, x) in self.particles.position.iter().enumerate() {
+            let m = self.particles.mass[p];
+            let cell = self.bins.cell_of(p);
+            self.basis
+                .for_each(&self.grid, cell, x, |i, phi, _| mass[i] += m * phi);
+        }
+    }
+
+    fn add_tractions(&mut self, forcing: &Forcing<T, D>) {
+        let force = &mut self.dofs.force;
+        for point in &self.surface {
+            let FaceCondition::Traction(traction) = forcing.face(point.face) else {
+                continue;
+            };
+            let p = point.particle;
+            let (position, volume) = (&self.particles.position[p], self.particles.volume[p]);
+            let x = point.position(&self.grid, position, volume);
+            let load = traction * point.area;
+            if let Some(cell) = self.grid.locate(&x) {
+                self.basis
+                    .for_each(&self.grid, &cell, &x, |i, phi, _| force[i] += load * phi);
+            }
+        }
+    }
+}
+
+/// `f_i = -integral(sigma grad phi_i)`, the stress given per particle.
+pub(super) fn internal_force<T, const D: usize, B, R>(
+    basis: &B,
+    reconstruction: &mut R,
+    cloud: &Cloud<'_, T, D>,
+    stress: impl Fn(usize) -> SMatrix<T, D, D>,
+    force: &mut [SVector<T, D>],
+) where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+{
+    force.fill(SVector::zeros());
+    reconstruction.integrate(cloud, stress, |point, weighted| {
+        let add = |i: usize, _, gradient| force[i] -= weighted * gradient;
+        if R::FIELDS_AT_PARTICLES {
+            basis.for_each(cloud.grid, &point.cell, &point.position, add);
+        } else {
+            basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);
+        }
+    });
+}

@@ -1,0 +1,298 @@
+//! The stepper: one time step of the material point method, for every basis, reconstruction, law and phase.
+//!
+#![doc = include_str!("../../docs/formulas.html")]
+//!
+//! Euler-Cromer with modified update stress last (MUSL, Sulsky, Zhou & Schreyer 1995), one file per stage:
+//!
+//! 1. `forces`: $m_i = \sum_p m_p\phi_i(x_p)$ and $f_i = -\int\sigma\nabla\phi_i + \text{traction}$;
+//! 2. `acceleration`: $a_i = f_i/m_i + b$, the prescribed value on constrained DOFs;
+//! 3. `velocity`: $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p)\,a_i$, then DOF velocities from the updated particles;
+//! 4. `advance`: position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$, stress by the law,
+//!    volume by $\det(1+\Delta\varepsilon)$ at large strain.
+//!
+//! Basis values of all stages are taken at the positions at the start of the step. Velocity lives half a step
+//! early: started from $v(0)$, after $n$ steps it approximates $v(n\Delta t - \Delta t/2)$.
+
+mod acceleration;
+mod advance;
+mod critical;
+mod diagnostics;
+mod forces;
+mod forcing;
+mod velocity;
+
+pub use diagnostics::{Conservation, Diagnostics, Energy};
+pub use forcing::{FaceCondition, Forcing, SurfacePoint};
+
+use nalgebra::SVector;
+
+use crate::basis::BasisFamily;
+use crate::error::{SetupError, StepError};
+use crate::grid::{Face, Grid};
+use crate::law::ConstitutiveLaw;
+use crate::mass::{Banded, VelocityMass};
+use crate::particles::{Bins, Outside, Particles};
+use crate::phase::Phase;
+use crate::reconstruction::{Cloud, Reconstruction};
+use crate::scalar::Scalar;
+
+/// All that a [`Stepper`] is made of.
+#[derive(Clone, Debug)]
+pub struct Setup<T, const D: usize, B, R, L: ConstitutiveLaw<T, D>, P: Phase<T, D>>
+where
+    T: Scalar,
+{
+    /// Background grid.
+    pub grid: Grid<T, D>,
+    /// Basis family.
+    pub basis: B,
+    /// Reconstruction.
+    pub reconstruction: R,
+    /// Constitutive law.
+    pub law: L,
+    /// Phases.
+    pub phase: P,
+    /// Mass behind the DOF velocities; a reconstruction that streams the particles' amounts lumps always.
+    pub velocity_mass: VelocityMass,
+    /// Particles in their initial state.
+    pub particles: Particles<T, D, L::State, P::Particle>,
+    /// Particles that carry tractions.
+    pub surface: Vec<SurfacePoint<T>>,
+}
+
+/// Steps particles through time. See the [module](self) for the algorithm.
+#[derive(Clone, Debug)]
+pub struct Stepper<T, const D: usize, B, R, L: ConstitutiveLaw<T, D>, P: Phase<T, D>>
+where
+    T: Scalar,
+{
+    grid: Grid<T, D>,
+    basis: B,
+    reconstruction: R,
+    law: L,
+    phase: P,
+    particles: Particles<T, D, L::State, P::Particle>,
+    surface: Vec<SurfacePoint<T>>,
+    bins: Bins<D>,
+    dofs: Dofs<T, D>,
+    /// DOFs of each face, in the order of [`Face::all`].
+    face_dofs: Vec<Vec<u32>>,
+    velocity_mass: VelocityMass,
+    time: T,
+    steps: usize,
+    diagnostics: Diagnostics<T>,
+}
+
+/// Data of the DOFs, allocated once.
+#[derive(Clone, Debug)]
+struct Dofs<T, const D: usize> {
+    /// Lumped mass of the particles.
+    mass: Vec<T>,
+    /// Force, then acceleration.
+    force: Vec<SVector<T, D>>,
+    /// Momentum, then velocity.
+    velocity: Vec<SVector<T, D>>,
+    /// Row sums of the reconstructed mass; empty where the particles' lumped mass or the matrix serves.
+    lumped: Vec<T>,
+    /// Consistent mass; of order zero where it is not used.
+    matrix: Banded<T>,
+    /// Its factors, held DOFs eliminated.
+    factor: Banded<T>,
+}
+
+impl<T: Scalar, const D: usize> Dofs<T, D> {
+    fn new(count: usize, half_band: usize, own_mass: Option<VelocityMass>) -> Self {
+        let order = |mass| if own_mass == Some(mass) { count } else { 0 };
+        let matrix = Banded::zeros(order(VelocityMass::Consistent), half_band);
+        Self {
+            mass: vec![T::zero(); count],
+            force: vec![SVector::zeros(); count],
+            velocity: vec![SVector::zeros(); count],
+            lumped: vec![T::zero(); order(VelocityMass::Lumped)],
+            factor: matrix.clone(),
+            matrix,
+        }
+    }
+}
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    /// Checks the particles and allocates all that steps will need.
+    ///
+    /// # Errors
+    /// If particle data are inconsistent or not finite, or a particle is outside the grid.
+    pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
+        let Setup {
+            grid,
+            basis,
+            reconstruction,
+            law,
+            phase,
+            velocity_mass,
+            particles,
+            surface,
+        } = setup;
+        particles.validate()?;
+        for point in &surface {
+            point.validate::<D>(particles.len())?;
+        }
+        let bins =
+            Bins::new(&grid, &particles.position).map_err(|Outside(particle)| SetupError::Outside {
+                particle,
+                position: values(&particles.position[particle]),
+            })?;
+        let own_mass = (!R::AMOUNTS_AT_PARTICLES).then_some(velocity_mass);
+        let dofs = Dofs::new(basis.dof_count(&grid), basis.half_band(&grid), own_mass);
+        let face_dofs = Face::all::<D>()
+            .map(|face| {
+                let mut list = Vec::new();
+                basis.for_each_on_face(&grid, face, |dof| list.push(dof as u32));
+                list
+            })
+            .collect();
+        let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
+        Ok(Self {
+            grid,
+            basis,
+            reconstruction,
+            law,
+            phase,
+            particles,
+            surface,
+            bins,
+            dofs,
+            face_dofs,
+            velocity_mass,
+            time: T::zero(),
+            steps: 0,
+            diagnostics: Diagnostics::new(mass),
+        })
+    }
+
+    /// One step of size `dt` (s) under `forcing`, the loads and boundary values of this step.
+    ///
+    /// # Errors
+    /// If a particle leaves the grid or its volume is no longer a positive number. The particles then hold the
+    /// state in which that was noticed.
+    pub fn step(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
+        if !dt.is_finite() || dt <= T::zero() {
+            return Err(StepError::StepSize { value: dt.primal() });
+        }
+        self.prepare();
+        self.assemble_forces(forcing);
+        self.accelerate(forcing);
+        self.update_particle_velocities(dt);
+        self.map_velocities(forcing);
+        self.steps += 1;
+        self.time += dt;
+        self.advance(dt)?;
+        self.relocate()
+    }
+
+    /// Takes in where the particles are.
+    fn prepare(&mut self) {
+        if !(R::FIELDS_AT_PARTICLES && R::AMOUNTS_AT_PARTICLES) {
+            self.bins.list(&self.grid);
+        }
+        let cloud = Cloud {
+            grid: &self.grid,
+            bins: &self.bins,
+            positions: &self.particles.position,
+            volumes: &self.particles.volume,
+        };
+        self.reconstruction.prepare(&cloud);
+        let reduced = self.reconstruction.reduced_cells();
+        self.diagnostics.record_reduced(reduced);
+    }
+
+    /// Looks the cells of the moved particles up.
+    fn relocate(&mut self) -> Result<(), StepError> {
+        match self.bins.locate(&self.grid, &self.particles.position) {
+            Ok(crossings) => {
+                self.diagnostics.grid_crossings += crossings;
+                Ok(())
+            }
+            Err(Outside(particle)) => Err(self.left(particle)),
+        }
+    }
+
+    fn left(&self, particle: usize) -> StepError {
+        let position = values(&self.particles.position[particle]);
+        match position.iter().find(|x| !x.is_finite()) {
+            Some(&value) => StepError::Invalid {
+                step: self.steps,
+                particle,
+                name: "position",
+                value,
+            },
+            None => StepError::LeftGrid {
+                step: self.steps,
+                particle,
+                position,
+            },
+        }
+    }
+
+    /// The particles.
+    pub fn particles(&self) -> &Particles<T, D, L::State, P::Particle> {
+        &self.particles
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid<T, D> {
+        &self.grid
+    }
+
+    /// The constitutive law.
+    pub fn law(&self) -> &L {
+        &self.law
+    }
+
+    /// Time reached (s).
+    pub fn time(&self) -> T {
+        self.time
+    }
+
+    /// Steps taken.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Number of DOFs.
+    pub fn dof_count(&self) -> usize {
+        self.dofs.mass.len()
+    }
+
+    /// Velocities of the DOFs in the last step (m/s).
+    pub fn dof_velocities(&self) -> &[SVector<T, D>] {
+        &self.dofs.velocity
+    }
+
+    /// What was counted and measured so far.
+    pub fn diagnostics(&self) -> &Diagnostics<T> {
+        &self.diagnostics
+    }
+
+    /// Bytes in use for each particle: its data, its place in the bins, and its share of the reconstruction's
+    /// and the DOFs' arrays.
+    pub fn bytes_per_particle(&self) -> f64 {
+        let dofs = &self.dofs;
+        let shared = self.reconstruction.bytes()
+            + size_of::<T>() * (dofs.mass.len() + dofs.lumped.len() + 2 * dofs.matrix.len())
+            + 2 * size_of::<SVector<T, D>>() * dofs.force.len();
+        let own =
+            Particles::<T, D, L::State, P::Particle>::bytes_per_particle() + Bins::<D>::bytes_per_particle();
+        own as f64 + shared as f64 / self.particles.len() as f64
+    }
+}
+
+/// A vector as plain numbers, for messages.
+fn values<T: Scalar, const D: usize>(x: &SVector<T, D>) -> Vec<f64> {
+    x.iter().map(|v| v.primal()).collect()
+}

@@ -1,0 +1,151 @@
+//! Stage 3: particle velocities, and DOF velocities from them.
+
+use nalgebra::SVector;
+
+use super::acceleration::for_each_held;
+use super::{Dofs, Forcing, Stepper};
+use crate::basis::BasisFamily;
+use crate::field::MassMomentum;
+use crate::law::ConstitutiveLaw;
+use crate::mass::VelocityMass;
+use crate::phase::Phase;
+use crate::reconstruction::{Cloud, Reconstruction};
+use crate::scalar::Scalar;
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    /// `v_p += dt sum_i phi_i(x_p) a_i`.
+    pub(super) fn update_particle_velocities(&mut self, dt: T) {
+        let acceleration = &self.dofs.force;
+        let particles = &mut self.particles;
+        for (p, x) in particles.position.iter().enumerate() {
+            let mut a = SVector::zeros();
+            let cell = self.bins.cell_of(p);
+            self.basis
+                .for_each(&self.grid, cell, x, |i, phi, _| a += acceleration[i] * phi);
+            particles.velocity[p] += a * dt;
+        }
+    }
+
+    /// DOF velocities by the reconstruction's mass and momentum.
+    pub(super) fn map_velocities(&mut self, forcing: &Forcing<T, D>) {
+        let mapped = self.map_momentum();
+        self.diagnostics.record(&self.particles, mapped);
+        self.divide_by_mass(forcing);
+    }
+
+    /// Momentum and mass of the DOFs; returns their totals.
+    pub(super) fn map_momentum(&mut self) -> MassMomentum<T, D> {
+        let momentum = &mut self.dofs.velocity;
+        momentum.fill(SVector::zeros());
+        let (basis, grid) = (&self.basis, &self.grid);
+        let (mass, velocity) = (&self.particles.mass, &self.particles.velocity);
+        let cloud = Cloud {
+            grid,
+            bins: &self.bins,
+            positions: &self.particles.position,
+            volumes: &self.particles.volume,
+        };
+        let of_particle = |p: usize| MassMomentum {
+            mass: mass[p],
+            momentum: velocity[p] * mass[p],
+        };
+        let total_mass = if R::AMOUNTS_AT_PARTICLES {
+            // The masses are those of stage 1 already.
+            let amount = |p| of_particle(p).momentum;
+            self.reconstruction
+                .integrate_conserved(&cloud, amount, |point, amount| {
+                    basis.for_each(grid, &point.cell, &point.position, |i, phi, _| {
+                        momentum[i] += amount * phi;
+                    });
+                });
+            sum(&self.dofs.mass)
+        } else if self.velocity_mass == VelocityMass::Lumped {
+            let lumped = &mut self.dofs.lumped;
+            lumped.fill(T::zero());
+            self.reconstruction
+                .integrate_conserved(&cloud, of_particle, |point, amount| {
+                    basis.for_each_at_fixed_point(grid, &point.cell, &point.position, |i, phi, _| {
+                        lumped[i] += amount.mass * phi;
+                        momentum[i] += amount.momentum * phi;
+                    });
+                });
+            sum(&self.dofs.lumped)
+        } else {
+            let matrix = &mut self.dofs.matrix;
+            matrix.clear();
+            self.reconstruction
+                .integrate_conserved(&cloud, of_particle, |point, amount| {
+                    let (cell, x) = (&point.cell, &point.position);
+                    basis.for_each_at_fixed_point(grid, cell, x, |i, phi_i, _| {
+                        momentum[i] += amount.momentum * phi_i;
+                        let m = amount.mass * phi_i;
+                        basis.for_each_at_fixed_point(grid, cell, x, |j, phi_j, _| {
+                            matrix.add(i, j, m * phi_j);
+                        });
+                    });
+                });
+            self.dofs.matrix.total()
+        };
+        let total_momentum = self.dofs.velocity.iter().fold(SVector::zeros(), |s, q| s + q);
+        MassMomentum {
+            mass: total_mass,
+            momentum: total_momentum,
+        }
+    }
+
+    /// Momentum to velocity, with the told values at held DOFs. DOFs without mass are at rest.
+    pub(super) fn divide_by_mass(&mut self, forcing: &Forcing<T, D>) {
+        if !R::AMOUNTS_AT_PARTICLES && self.velocity_mass == VelocityMass::Consistent {
+            return self.solve_consistent(forcing);
+        }
+        let dofs = &mut self.dofs;
+        let mass = if R::AMOUNTS_AT_PARTICLES {
+            &dofs.mass
+        } else {
+            &dofs.lumped
+        };
+        for (velocity, &mass) in dofs.velocity.iter_mut().zip(mass) {
+            // A fitted density may be negative somewhere; only a vanishing mass has no velocity.
+            *velocity = if mass == T::zero() {
+                SVector::zeros()
+            } else {
+                *velocity / mass
+            };
+        }
+        for_each_held(&self.face_dofs, forcing, |dof, axis, velocity, _| {
+            dofs.velocity[dof][axis] = velocity;
+        });
+    }
+
+    /// `M v = p` with the held DOFs eliminated. Overwriting them after an unconstrained solve would leave an
+    /// error of one order less in the strain of the cells at the boundary.
+    fn solve_consistent(&mut self, forcing: &Forcing<T, D>) {
+        let Dofs {
+            velocity,
+            matrix,
+            factor,
+            ..
+        } = &mut self.dofs;
+        for axis in 0..D {
+            factor.copy_from(matrix);
+            for_each_held(&self.face_dofs, forcing, |dof, held, value, _| {
+                if held == axis {
+                    factor.prescribe(dof, axis, value, velocity);
+                }
+            });
+            factor.factorise();
+            factor.solve(velocity, axis);
+        }
+    }
+}
+
+fn sum<T: Scalar>(values: &[T]) -> T {
+    values.iter().fold(T::zero(), |sum, &v| sum + v)
+}

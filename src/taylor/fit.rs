@@ -1,0 +1,166 @@
+//! Least squares in the Taylor functions of one cell.
+//!
+//! The fit is kept as a triangular matrix `C` that turns the Taylor functions into functions orthonormal on
+//! the cell's particles, `pi = C psi`. Then the coefficients of any field are `C^T sum_p pi(x_p) q_p`: one
+//! geometry serves stress, density and momentum. Where the points are well spread, `C` comes from the Gram
+//! matrix (a few sums per particle). Where they are not, squaring the condition number would cost the
+//! digits that are left (and a Cholesky factorisation of a singular matrix may well succeed with garbage),
+//! so there `C` comes from Givens rotations, one particle at a time. A function that depends on the ones
+//! before it on these points is dropped.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::taylor_functions;
+use crate::field::Field;
+use crate::scalar::Scalar;
+
+/// A function counts as dependent where less than this factor times the root of the machine epsilon of it
+/// is left after the ones before it are projected out (default of [`CellFit::new`]'s `tolerance`).
+pub const DEFAULT_TOLERANCE_FACTOR: f64 = 4.0;
+
+/// Share of a function's square sum that must be independent for the Gram matrix to be trusted.
+const GRAM_SHARE: f64 = 1e-2;
+
+/// Least-squares fit of fields in one cell, prepared for a set of points.
+#[derive(Clone, Copy, Debug)]
+pub struct CellFit<T, const NB: usize> {
+    orthonormal: SMatrix<T, NB, NB>,
+    functions: usize,
+}
+
+impl<T: Scalar, const NB: usize> CellFit<T, NB> {
+    /// Prepares the fit on the points with local coordinates `points`, a sequence that can be run through
+    /// repeatedly.
+    ///
+    /// `first` is 0 for the free fit and 1 where the mean is given. At most as many functions as points are
+    /// used, and none that depends on the earlier ones up to the relative `tolerance`.
+    pub fn new<const D: usize>(
+        points: impl Iterator<Item = SVector<T, D>> + Clone,
+        first: usize,
+        tolerance: T,
+    ) -> Self {
+        let rows = points.map(|s| taylor_functions::<T, D, NB>(&s));
+        let end = rows.clone().take(NB).count();
+        let mut wanted = [false; NB];
+        wanted[first.min(end)..end].fill(true);
+        Self::from_gram(rows.clone(), &wanted)
+            .unwrap_or_else(|| Self::from_rotations(rows, wanted, tolerance))
+    }
+
+    /// Cholesky factorisation of the Gram matrix; `None` where it loses too many digits.
+    fn from_gram(rows: impl Iterator<Item = SVector<T, NB>>, wanted: &[bool; NB]) -> Option<Self> {
+        let mut gram = SMatrix::<T, NB, NB>::zeros();
+        for psi in rows {
+            for i in 0..NB {
+                for j in 0..=i {
+                    gram[(i, j)] += psi[i] * psi[j];
+                }
+            }
+        }
+        let mut r = SMatrix::<T, NB, NB>::zeros();
+        for k in (0..NB).filter(|&k| wanted[k]) {
+            let mut left = gram[(k, k)];
+            for j in (0..k).filter(|&j| wanted[j]) {
+                let dot = (0..j).fold(gram[(k, j)], |sum, i| sum - r[(i, j)] * r[(i, k)]);
+                r[(j, k)] = dot / r[(j, j)];
+                left -= r[(j, k)] * r[(j, k)];
+            }
+            if left <= gram[(k, k)] * T::lit(GRAM_SHARE) {
+                return None;
+            }
+            r[(k, k)] = left.sqrt();
+        }
+        Some(Self::from_factor(&r, wanted))
+    }
+
+    /// QR factorisation by Givens rotations, again without each function found dependent.
+    fn from_rotations(
+        rows: impl Iterator<Item = SVector<T, NB>> + Clone,
+        mut wanted: [bool; NB],
+        tolerance: T,
+    ) -> Self {
+        loop {
+            let r = rotate(rows.clone(), &wanted);
+            let dependent = (0..NB).filter(|&k| wanted[k]).find(|&k| {
+                let norm = (0..=k).fold(T::zero(), |n, i| n + r[(i, k)] * r[(i, k)]).sqrt();
+                r[(k, k)].abs() <= tolerance * norm
+            });
+            match dependent {
+                Some(k) => wanted[k] = false,
+                None => return Self::from_factor(&r, &wanted),
+            }
+        }
+    }
+
+    /// `C = R^-T`, row by row: `pi_k = (psi_k - sum_j r_jk pi_j) / r_kk`.
+    fn from_factor(r: &SMatrix<T, NB, NB>, wanted: &[bool; NB]) -> Self {
+        let mut c = SMatrix::<T, NB, NB>::zeros();
+        for k in (0..NB).filter(|&k| wanted[k]) {
+            let mut row = SMatrix::<T, 1, NB>::zeros();
+            row[k] = T::one();
+            for j in (0..k).filter(|&j| wanted[j]) {
+                row -= c.row(j) * r[(j, k)];
+            }
+            c.set_row(k, &(row / r[(k, k)]));
+        }
+        Self {
+            orthonormal: c,
+            functions: wanted.iter().filter(|&&w| w).count(),
+        }
+    }
+
+    /// Number of functions in the fit; a given mean is not counted.
+    pub fn functions(&self) -> usize {
+        self.functions
+    }
+
+    /// Coefficients of the field with the given `samples` (local coordinates and value at the same points as
+    /// at the preparation), less `mean`. The mean itself is *not* added to the first coefficient.
+    #[inline(always)]
+    pub fn coefficients<const D: usize, Q: Field<T>>(
+        &self,
+        samples: impl Iterator<Item = (SVector<T, D>, Q)>,
+        mean: Q,
+    ) -> [Q; NB] {
+        let mut moments = [Q::zero(); NB];
+        for (s, value) in samples {
+            let psi = taylor_functions::<T, D, NB>(&s);
+            let mut rest = value;
+            rest.add_scaled(-T::one(), mean);
+            for k in 0..NB {
+                let pi = (0..=k).fold(T::zero(), |sum, j| sum + self.orthonormal[(k, j)] * psi[j]);
+                moments[k].add_scaled(pi, rest);
+            }
+        }
+        std::array::from_fn(|j| {
+            let mut coefficient = Q::zero();
+            for k in j..NB {
+                coefficient.add_scaled(self.orthonormal[(k, j)], moments[k]);
+            }
+            coefficient
+        })
+    }
+}
+
+/// Upper triangular factor of the matrix with the given rows, `wanted` columns only (the others stay zero).
+fn rotate<T: Scalar, const NB: usize>(
+    rows: impl Iterator<Item = SVector<T, NB>>,
+    wanted: &[bool; NB],
+) -> SMatrix<T, NB, NB> {
+    let mut r = SMatrix::<T, NB, NB>::zeros();
+    for mut row in rows {
+        for k in (0..NB).filter(|&k| wanted[k]) {
+            if row[k] == T::zero() {
+                continue;
+            }
+            let length = r[(k, k)].hypot(row[k]);
+            let (cos, sin) = (r[(k, k)] / length, row[k] / length);
+            for j in k..NB {
+                let (above, below) = (r[(k, j)], row[j]);
+                r[(k, j)] = cos * above + sin * below;
+                row[j] = cos * below - sin * above;
+            }
+        }
+    }
+    r
+}

@@ -1,0 +1,16 @@
+//! Taylor basis functions of one cell and the least-squares fit in them.
+//!
+#![doc = include_str!("../../docs/formulas.html")]
+//!
+//! In a cell with centre $c$ and half sizes $d_a$ let $s_a = (x_a - c_a)/d_a$. The basis (journal section 5.2) is
+//!
+//! $$\psi_0 = 1,\quad \psi_{1+a} = s_a,\quad \tfrac12 s_a^2 - \tfrac16,\quad s_a s_b\ (a<b),$$
+//!
+//! so $\int\psi_0 = |\text{cell}|$ and every other integral vanishes: a fit whose first coefficient is fixed
+//! to the cell's mean keeps the integral exactly, whatever the other coefficients are.
+
+mod basis;
+mod fit;
+
+pub use basis::taylor_functions;
+pub use fit::{CellFit, DEFAULT_TOLERANCE_FACTOR};
