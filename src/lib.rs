@@ -6,6 +6,7 @@ pub mod field;
 pub mod grid;
 pub mod law;
 pub mod mass;
+pub mod method;
 pub mod particles;
 pub mod phase;
 pub mod quadrature;
@@ -21,3 +22,5 @@ pub mod testing;
 pub mod output;
 #[cfg(feature = "scene")]
 pub mod scene;
+#[cfg(feature = "scene")]
+pub mod study;

@@ -1,1 +1,33 @@
+//! What a run leaves on disk: tables as CSV and pictures as SVG.
+//!
+//! [`Folder`] is checked before anything is computed, and a file in it is complete or absent. Pictures are
+//! returned as text, drawn from four primitives; a plotting crate would place them on whole pixels and bring
+//! neither dashes nor haloes. Colours are those of Okabe and Ito, and every distinction that a colour makes is
+//! made again by a marker, its filling or a dash, so that a grey print tells the same.
 
+mod error;
+mod fields;
+mod folder;
+mod frame;
+mod grid_of_fields;
+mod labels;
+mod legend;
+mod panel;
+mod scale;
+mod study;
+mod style;
+mod svg;
+mod table;
+mod text;
+mod ticks;
+
+pub use error::OutputError;
+pub use fields::draw_fields;
+pub use folder::Folder;
+pub use grid_of_fields::draw_grid_of_fields;
+pub use panel::FieldPanel;
+pub use study::{Curve, CurvePoint, draw_study};
+pub use table::{Records, Table, number};
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,7 @@
 //! Material points: what they carry, how a body is filled with them, which cell holds them.
 
 mod bins;
+mod cast;
 mod lattice;
 
 pub use bins::{Bins, Outside};

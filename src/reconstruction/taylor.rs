@@ -118,6 +118,21 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
             .collect()
     }
 
+    /// Streams the fit through the `value`s whose mean is `mean(cell)`: to keep an integral that is known from
+    /// elsewhere.
+    pub fn integrate_with_mean<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        value: impl Fn(usize) -> Q,
+        mean: impl Fn(&Cell<D>) -> Q,
+        mut sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        let coefficients = self.coefficients_with_mean(cloud, value, mean);
+        for ((cell, _), coefficients) in self.each_cell(cloud).zip(&coefficients) {
+            self.emit(cloud, cell, coefficients, &mut sink);
+        }
+    }
+
     /// Coefficients of the free fit in every occupied cell, ascending.
     pub fn free_coefficients<Q: Field<T>>(
         &self,

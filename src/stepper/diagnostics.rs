@@ -31,7 +31,8 @@ pub struct Diagnostics<T> {
     pub grid_crossings: usize,
     /// Most cells in one step that could not be fitted with the full set of functions.
     pub reduced_cells: usize,
-    total_mass: T,
+    /// Mass of all particles.
+    pub total_mass: T,
 }
 
 /// Energy of the particles (1-D: J/m2, 2-D: J/m, 3-D: J).

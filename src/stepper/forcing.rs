@@ -109,6 +109,15 @@ pub struct SurfacePoint<T> {
 }
 
 impl<T: Scalar> SurfacePoint<T> {
+    /// The same point in another scalar.
+    pub fn cast<U: Scalar>(&self) -> SurfacePoint<U> {
+        SurfacePoint {
+            particle: self.particle,
+            face: self.face,
+            area: U::lit(self.area.primal()),
+        }
+    }
+
     pub(super) fn validate<const D: usize>(&self, particles: usize) -> Result<(), SetupError> {
         let refuse = |name, value, allowed| SetupError::Constant { name, value, allowed };
         if self.particle >= particles {

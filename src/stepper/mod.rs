@@ -6,7 +6,7 @@
 //!
 //! 1. `forces`: $m_i = \sum_p m_p\phi_i(x_p)$ and $f_i = -\int\sigma\nabla\phi_i + \text{traction}$;
 //! 2. `acceleration`: $a_i = f_i/m_i + b$, the prescribed value on constrained DOFs;
-//! 3. `velocity`: $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p)\,a_i$, then DOF velocities from the updated particles;
+//! 3. `velocity`: $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p) a_i$, then DOF velocities from the updated particles;
 //! 4. `advance`: position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$, stress by the law,
 //!    volume by $\det(1+\Delta\varepsilon)$ at large strain.
 //!
@@ -19,10 +19,12 @@ mod critical;
 mod diagnostics;
 mod forces;
 mod forcing;
+mod simulation;
 mod velocity;
 
 pub use diagnostics::{Conservation, Diagnostics, Energy};
 pub use forcing::{FaceCondition, Forcing, SurfacePoint};
+pub use simulation::Simulation;
 
 use nalgebra::SVector;
 
@@ -96,19 +98,23 @@ struct Dofs<T, const D: usize> {
     lumped: Vec<T>,
     /// Consistent mass; of order zero where it is not used.
     matrix: Banded<T>,
-    /// Its factors, held DOFs eliminated.
+    /// Its factors.
     factor: Banded<T>,
 }
 
 impl<T: Scalar, const D: usize> Dofs<T, D> {
     fn new(count: usize, half_band: usize, own_mass: Option<VelocityMass>) -> Self {
-        let order = |mass| if own_mass == Some(mass) { count } else { 0 };
-        let matrix = Banded::zeros(order(VelocityMass::Consistent), half_band);
+        let (lumped, consistent) = match own_mass {
+            None => (0, 0),
+            Some(VelocityMass::Lumped) => (count, 0),
+            Some(VelocityMass::Consistent | VelocityMass::Constrained) => (0, count),
+        };
+        let matrix = Banded::zeros(consistent, half_band);
         Self {
             mass: vec![T::zero(); count],
             force: vec![SVector::zeros(); count],
             velocity: vec![SVector::zeros(); count],
-            lumped: vec![T::zero(); order(VelocityMass::Lumped)],
+            lumped: vec![T::zero(); lumped],
             factor: matrix.clone(),
             matrix,
         }

@@ -102,9 +102,18 @@ where
 
     /// Momentum to velocity, with the told values at held DOFs. DOFs without mass are at rest.
     pub(super) fn divide_by_mass(&mut self, forcing: &Forcing<T, D>) {
-        if !R::AMOUNTS_AT_PARTICLES && self.velocity_mass == VelocityMass::Consistent {
-            return self.solve_consistent(forcing);
+        if R::AMOUNTS_AT_PARTICLES || self.velocity_mass == VelocityMass::Lumped {
+            self.divide_by_lumped_mass();
+        } else {
+            self.solve_consistent(forcing);
         }
+        let velocities = &mut self.dofs.velocity;
+        for_each_held(&self.face_dofs, forcing, |dof, axis, velocity, _| {
+            velocities[dof][axis] = velocity;
+        });
+    }
+
+    fn divide_by_lumped_mass(&mut self) {
         let dofs = &mut self.dofs;
         let mass = if R::AMOUNTS_AT_PARTICLES {
             &dofs.mass
@@ -119,13 +128,9 @@ where
                 *velocity / mass
             };
         }
-        for_each_held(&self.face_dofs, forcing, |dof, axis, velocity, _| {
-            dofs.velocity[dof][axis] = velocity;
-        });
     }
 
-    /// `M v = p` with the held DOFs eliminated. Overwriting them after an unconstrained solve would leave an
-    /// error of one order less in the strain of the cells at the boundary.
+    /// `M v = p`, the held DOFs eliminated if they are constraints. They may differ from axis to axis.
     fn solve_consistent(&mut self, forcing: &Forcing<T, D>) {
         let Dofs {
             velocity,
@@ -133,6 +138,12 @@ where
             factor,
             ..
         } = &mut self.dofs;
+        if self.velocity_mass == VelocityMass::Consistent {
+            factor.copy_from(matrix);
+            factor.factorise();
+            (0..D).for_each(|axis| factor.solve(velocity, axis));
+            return;
+        }
         for axis in 0..D {
             factor.copy_from(matrix);
             for_each_held(&self.face_dofs, forcing, |dof, held, value, _| {

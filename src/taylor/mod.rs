@@ -4,7 +4,7 @@
 //!
 //! In a cell with centre $c$ and half sizes $d_a$ let $s_a = (x_a - c_a)/d_a$. The basis (journal section 5.2) is
 //!
-//! $$\psi_0 = 1,\quad \psi_{1+a} = s_a,\quad \tfrac12 s_a^2 - \tfrac16,\quad s_a s_b\ (a<b),$$
+//! $$\psi_0 = 1,\quad \psi_{1+a} = s_a,\quad \tfrac12 s_a^2 - \tfrac16,\quad s_a s_b \quad (a \lt b),$$
 //!
 //! so $\int\psi_0 = |\text{cell}|$ and every other integral vanishes: a fit whose first coefficient is fixed
 //! to the cell's mean keeps the integral exactly, whatever the other coefficients are.

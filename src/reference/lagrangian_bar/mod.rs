@@ -102,23 +102,27 @@ impl<L: UniaxialLaw> LagrangianBar<L> {
     /// Marches to `end`, s, through an interval in which the body force is smooth.
     fn march(&mut self, end: f64) -> Result<(), ReferenceError> {
         while self.motion.time < end {
-            let (step, is_last) = self.next_step(end)?;
+            let step = self.next_step(end)?;
             let (law, force, operator) = (&self.problem.law, &self.problem.body_force, &self.operator);
             self.integrator
                 .step(&mut self.motion, step, |time, displacement, out| {
                     let force = check::finite("body force", force(time))?;
                     operator.acceleration(law, time, displacement, force, out)
                 })?;
-            if is_last {
-                // A sum of steps would miss the end by its rounding.
-                self.motion.time = end;
-            }
+            // Rounding may carry the last step past the end, where asking for it again would mean going back.
+            self.motion.time = self.motion.time.min(end);
         }
         Ok(())
     }
 
-    /// The next step, s, of equal ones that reach `end`, and whether it is the last.
-    fn next_step(&self, end: f64) -> Result<(f64, bool), ReferenceError> {
+    /// The next kink of the body force, s, or `time` where that comes first.
+    fn next_stop(&self, time: f64) -> f64 {
+        let ahead = |kink: &f64| *kink > self.motion.time && *kink < time;
+        self.problem.kinks.iter().copied().find(ahead).unwrap_or(time)
+    }
+
+    /// The next step, s, of equal ones that reach `end`.
+    fn next_step(&self, end: f64) -> Result<f64, ReferenceError> {
         let Motion {
             time, displacement, ..
         } = &self.motion;
@@ -128,7 +132,7 @@ impl<L: UniaxialLaw> LagrangianBar<L> {
         let limit = STEP_FRACTION * STABILITY_LIMIT / frequency;
         if limit > 4.0 * f64::EPSILON * end {
             let steps = ((end - time) / limit).ceil();
-            Ok(((end - time) / steps, steps <= 1.0))
+            Ok((end - time) / steps)
         } else {
             Err(ReferenceError::StepTooSmall {
                 time: *time,
@@ -194,13 +198,9 @@ impl<L: UniaxialLaw> Reference for LagrangianBar<L> {
         if time < self.motion.time {
             self.motion = initial_motion(&self.problem, &self.operator)?;
         }
-        for index in 0..self.problem.kinks.len() {
-            let kink = self.problem.kinks[index];
-            if kink < time {
-                self.march(kink)?;
-            }
+        while self.motion.time < time {
+            self.march(self.next_stop(time))?;
         }
-        self.march(time)?;
         self.check_state()
     }
 

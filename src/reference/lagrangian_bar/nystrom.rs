@@ -119,7 +119,7 @@ mod tests {
         (motion.displacement[0], motion.velocity[0])
     }
 
-    /// `u'' = -sin u + (sin t - sin(...))` made so that `u = sin t` solves it: non-linear and driven.
+    /// `u'' = sin(sin t) - sin t - sin u`, which `u = sin t` solves: non-linear and driven.
     #[test]
     fn has_order_four_on_a_driven_nonlinear_oscillator() {
         let error = |steps| {

@@ -221,3 +221,104 @@ fn assemble_mass(rule: &Lobatto, elements: usize, scale: f64) -> Vec<f64> {
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::Linear;
+    use super::*;
+
+    const LAW: Linear = Linear { youngs_modulus: 3.0 };
+
+    fn operator(ends: [End; 2]) -> Operator {
+        let problem = BarProblem::new(2.0, 5.0, LAW).ends(ends[0], ends[1]);
+        Operator::new(
+            &problem,
+            Resolution {
+                elements: 3,
+                degree: 4,
+            },
+        )
+    }
+
+    fn nodal(operator: &Operator, f: impl Fn(f64) -> f64) -> Vec<f64> {
+        (0..operator.node_count())
+            .map(|node| f(operator.coordinate(node)))
+            .collect()
+    }
+
+    #[test]
+    fn masses_and_quadrature_measure_the_bar() {
+        let operator = operator([End::Fixed, End::Free]);
+        assert!((operator.mass().iter().sum::<f64>() - 10.0).abs() < 1e-13);
+        let moment: f64 = operator.quadrature().map(|(x, weight)| weight * x.powi(3)).sum();
+        assert!((moment - 4.0).abs() < 1e-13, "{moment}");
+        let squares = operator.integrate(&nodal(&operator, |x| 0.1 * x * x), |stretch| stretch * stretch);
+        let exact = 2.0 + 0.4 * 2.0 + 0.04 * 8.0 / 3.0;
+        assert!((squares - exact).abs() < 1e-13, "{squares} against {exact}");
+    }
+
+    /// Under u = X^3 - 12 X the free right end, at 2, bears no stress, and E u_XX / rho = 18 X / 5 everywhere.
+    #[test]
+    fn acceleration_is_the_divergence_of_the_stress() {
+        let operator = operator([End::Fixed, End::Free]);
+        let displacement = nodal(&operator, |x| 0.01 * (x.powi(3) - 12.0 * x));
+        let mut acceleration = vec![0.0; operator.node_count()];
+        operator
+            .acceleration(&LAW, 0.0, &displacement, 7.0, &mut acceleration)
+            .unwrap();
+        assert_eq!(acceleration[0], 0.0);
+        for (node, a) in acceleration.iter().enumerate().skip(1) {
+            let exact = 0.036 * operator.coordinate(node) + 7.0;
+            assert!((a - exact).abs() < 1e-12, "{a} against {exact} at node {node}");
+        }
+    }
+
+    /// The frequency bound lies above the largest eigenfrequency, which power iteration finds, but not far.
+    #[test]
+    fn frequency_bound_is_sharp() {
+        let operator = operator([End::Free, End::Free]);
+        let rest = vec![0.0; operator.node_count()];
+        let bound = operator.largest_frequency(&LAW, 0.0, &rest).unwrap();
+        let mut mode = nodal(&operator, |x| 1e-3 * (40.0 * x).sin());
+        let mut image = rest;
+        let mut growth = 0.0;
+        for _ in 0..500 {
+            operator.acceleration(&LAW, 0.0, &mode, 0.0, &mut image).unwrap();
+            growth = norm(&image) / norm(&mode);
+            let scale = 1e-3 / norm(&image);
+            mode = image.iter().map(|a| a * scale).collect();
+        }
+        let largest = growth.sqrt();
+        assert!(
+            largest <= bound * (1.0 + 1e-12) && largest > 0.9 * bound,
+            "{largest} against {bound}"
+        );
+    }
+
+    fn norm(values: &[f64]) -> f64 {
+        dot(values, values).sqrt()
+    }
+
+    #[test]
+    fn inverted_element_is_refused_and_located() {
+        let operator = operator([End::Fixed, End::Free]);
+        let displacement = nodal(&operator, |x| -0.3 * x * x);
+        let mut acceleration = vec![0.0; operator.node_count()];
+        let result = operator.acceleration(&LAW, 4.0, &displacement, 0.0, &mut acceleration);
+        let Err(ReferenceError::InvalidStretch {
+            time,
+            position,
+            stretch,
+        }) = result
+        else {
+            panic!("{result:?}");
+        };
+        assert_eq!(time, 4.0);
+        // J = 1 - 0.6 X is first negative at the first node beyond 5/3.
+        assert!(
+            position > 5.0 / 3.0 && position < 1.9 && stretch <= 0.0,
+            "{position} {stretch}"
+        );
+        assert!((stretch - (1.0 - 0.6 * position)).abs() < 1e-12);
+    }
+}

@@ -168,6 +168,17 @@ fn going_back_restarts_and_repeating_changes_nothing() {
     assert_eq!(bar.at(0.3).displacement, 0.0);
 }
 
+/// A step added to a time reaches the next one only within rounding; past it, the same `advance` would start again.
+#[test]
+fn arrives_at_exactly_the_time_asked_for() {
+    let mut bar = hill_bar(0.8, 8, 8);
+    for i in 1..=300 {
+        bar.advance(1e-5 / f64::from(3 * i)).unwrap();
+        bar.advance(0.777e-5).unwrap();
+        assert_eq!(bar.motion.time, 0.777e-5);
+    }
+}
+
 #[test]
 fn origin_only_moves_the_bar() {
     let mut here = hill_bar(0.8, 8, 8);

@@ -122,6 +122,43 @@ fn state_that_is_no_number() {
     assert!(bar.advance(1e-6).is_err());
 }
 
+/// In one step of 1e-5 s the strain v0 pi t / L reaches 2.5e-5 in the last stage, whose stress only the velocity sees.
+#[test]
+fn stress_that_is_no_number_in_the_last_stage() {
+    struct Brittle;
+    impl UniaxialLaw for Brittle {
+        fn stress(&self, stretch: f64) -> f64 {
+            if stretch > 1.0 + 2e-5 {
+                f64::NAN
+            } else {
+                4e4 * (stretch - 1.0)
+            }
+        }
+        fn stiffness(&self, _stretch: f64) -> f64 {
+            4e4
+        }
+    }
+    let mut bar = LagrangianBar::vibrating_bar(1.0, 2e3, 0.8, Brittle).unwrap();
+    let result = bar.advance(1e-5);
+    assert!(
+        matches!(result, Err(ReferenceError::InvalidVelocity { .. })),
+        "{result:?}"
+    );
+}
+
+/// Waves of 1e150 m/s: no step that they allow moves the time on.
+#[test]
+fn steps_that_vanish() {
+    let stiff = Linear {
+        youngs_modulus: 1e300,
+    };
+    let mut bar = LagrangianBar::vibrating_bar(1.0, 1.0, 0.8, stiff).unwrap();
+    assert!(matches!(
+        bar.advance(1.0),
+        Err(ReferenceError::StepTooSmall { .. })
+    ));
+}
+
 #[test]
 fn force_beyond_all_bounds() {
     let mut bar = LagrangianBar::new(

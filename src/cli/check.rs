@@ -1,0 +1,81 @@
+//! `materialpoint check`.
+
+use materialpoint::scene::{MethodSummary, StepSize, critical_step, simulation};
+use serde_json::json;
+
+use super::Shared;
+use super::failure::Failure;
+use super::print::{print, print_json};
+use super::run::load;
+
+pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
+    let scene = load(name, &shared.set)?;
+    let built = simulation(&scene)?;
+    let critical = critical_step(&scene)?;
+    let method = MethodSummary::of(&scene);
+    let mechanism = format!(
+        "an elastic wave crossing a cell: {} basis, {} mass in the velocity, lumped in the acceleration",
+        method.basis, method.velocity_mass
+    );
+    let unknowns = scene.dimension();
+    let fields = [
+        "initial position",
+        "position",
+        "displacement",
+        "velocity",
+        "stress",
+        "mass",
+        "volume",
+    ];
+    let asked = match scene.time.step {
+        StepSize::Fixed(step) => step,
+        StepSize::Auto { safety } => critical.map_or(f64::NAN, |limit| safety * limit),
+    };
+    let stable = critical.is_none_or(|limit| asked <= limit);
+    if shared.json {
+        return print_json(&json!({
+            "title": scene.title,
+            "method": method,
+            "particles": built.particle_count(),
+            "dofs": built.dof_count(),
+            "unknowns_per_dof": unknowns,
+            "fields_per_particle": fields,
+            "bytes_per_particle": built.bytes_per_particle(),
+            "time_step": asked,
+            "critical_time_step": critical,
+            "mechanism": mechanism,
+            "stable": stable,
+        }));
+    }
+    let mut lines = vec![format!("{}: the scene is valid", scene.title)];
+    lines.push(format!(
+        "  particles     {}, each with {}",
+        built.particle_count(),
+        fields.join(", ")
+    ));
+    lines.push(format!(
+        "  DOFs          {}, {unknowns} velocity component each",
+        built.dof_count()
+    ));
+    lines.push(format!(
+        "  memory        {:.0} bytes per particle, {:.3} MB in all",
+        built.bytes_per_particle(),
+        built.bytes_per_particle() * built.particle_count() as f64 / 1e6
+    ));
+    match critical {
+        Some(limit) => {
+            lines.push(format!(
+                "  stable step   up to {limit:.4e} s, limited by {mechanism}"
+            ));
+            let verdict = if stable { "stable" } else { "UNSTABLE" };
+            lines.push(format!(
+                "  time.step     {asked:.4e} s, {:.2} of that: {verdict}",
+                asked / limit
+            ));
+        }
+        None => lines.push(format!(
+            "  stable step   any: nothing resists a motion of these particles"
+        )),
+    }
+    print(&(lines.join("\n") + "\n"))
+}

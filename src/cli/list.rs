@@ -1,0 +1,76 @@
+//! `materialpoint list`.
+
+use materialpoint::method::Method;
+use materialpoint::scene::Scene;
+
+const NAMES: [(&str, &[(&str, &str)]); 5] = [
+    (
+        "basis families (method.basis)",
+        &[
+            ("linear", "piecewise linear hats: the original MPM"),
+            (
+                "dual-domain",
+                "linear values, gradients continuous over cell edges: DDMPM",
+            ),
+            ("bspline", "B-splines of degree 1, 2 (default) or 3: BSMPM"),
+        ],
+    ),
+    (
+        "reconstructions (method.reconstruction)",
+        &[
+            (
+                "shepard",
+                "the particles themselves are the quadrature points: plain MPM",
+            ),
+            (
+                "taylor",
+                "Taylor least squares per cell and Gauss points: keeps mass and momentum",
+            ),
+            (
+                "spline",
+                "global cubic spline and Gauss points, 1-D: accurate, keeps neither",
+            ),
+        ],
+    ),
+    (
+        "laws (material.law.NAME with material.strain)",
+        &[
+            (
+                "linear-elastic",
+                "strain = \"small\": Hooke; strain = \"large\": Hill's rate",
+            ),
+            ("neo-hookean", "strain = \"large\": compressible neo-Hookean"),
+        ],
+    ),
+    ("phases (material.phases)", &[("1", "a dry solid")]),
+    (
+        "references ([reference])",
+        &[
+            (
+                "vibrating-bar",
+                "exact at small strain, converged Lagrangian solution at large strain",
+            ),
+            (
+                "column-compaction",
+                "against = \"static\" or \"dynamic\" (converged)",
+            ),
+        ],
+    ),
+];
+
+/// The list for people.
+pub(super) fn list() -> String {
+    let mut lines = Vec::new();
+    for (heading, names) in NAMES {
+        lines.push(heading.to_owned());
+        lines.extend(names.iter().map(|(name, words)| format!("  {name:<18} {words}")));
+    }
+    lines.push("scenes (compiled in; give the name instead of a file)".to_owned());
+    lines.extend(Scene::builtin_names().map(|name| format!("  {name}")));
+    let methods: Vec<_> = Method::NINE.iter().map(Method::to_string).collect();
+    lines.push(format!(
+        "methods of a study (--methods)\n  {}\n",
+        methods.join(", ")
+    ));
+    lines.join("\n")
+}

@@ -1,0 +1,97 @@
+//! Commands and flags.
+
+mod bar;
+mod check;
+mod failure;
+mod list;
+mod print;
+mod run;
+mod study;
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use failure::Failure;
+
+/// The material point method, with basis, reconstruction and law of your choice.
+///
+/// Without a command: the default study, a vibrating bar at large deformation with nine methods side by side.
+#[derive(Debug, Parser)]
+#[command(version, about)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    shared: Shared,
+    #[command(flatten)]
+    study: StudyFlags,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run one scene with its method.
+    Run {
+        /// Scene file (TOML), or the name of a compiled-in scene (see `list`).
+        scene: String,
+    },
+    /// Compare methods and resolutions on one scene: speed against error.
+    Study {
+        /// Scene file (TOML), or the name of a compiled-in scene (see `list`).
+        scene: String,
+    },
+    /// Validate a scene; print what will be modelled and the largest stable time step.
+    Check {
+        /// Scene file (TOML), or the name of a compiled-in scene (see `list`).
+        scene: String,
+    },
+    /// List basis families, reconstructions, laws, phases, references and scenes.
+    List,
+}
+
+/// Flags of every command that takes a scene.
+#[derive(Args, Debug)]
+struct Shared {
+    /// Override a scene key, repeatable: --set time.end=0.2
+    #[arg(long = "set", value_name = "KEY=VALUE", global = true)]
+    set: Vec<String>,
+    /// Folder for the files written.
+    #[arg(long, value_name = "DIR", default_value = "out", global = true)]
+    out: PathBuf,
+    /// Print the summary as JSON on standard output, and nothing else there.
+    #[arg(long, global = true)]
+    json: bool,
+    /// No progress bar.
+    #[arg(long, global = true)]
+    quiet: bool,
+}
+
+/// Flags of a study.
+#[derive(Args, Debug)]
+struct StudyFlags {
+    /// Methods: all, or a list of basis+reconstruction (linear+taylor,bspline3+spline).
+    #[arg(long, default_value = "all", global = true)]
+    methods: String,
+    /// Numbers of cells.
+    #[arg(long, value_delimiter = ',', value_name = "N,N,...", global = true)]
+    cells: Vec<usize>,
+    /// Time each run this often; the median counts.
+    #[arg(long, value_name = "N", default_value_t = 1, global = true)]
+    repeat: usize,
+}
+
+/// Does what the arguments say.
+pub(crate) fn execute(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments {
+        command,
+        shared,
+        study,
+    } = arguments;
+    match command {
+        None => study::default_study(shared, study),
+        Some(Command::Study { scene }) => study::study_scene(scene, shared, study),
+        Some(Command::Run { scene }) => run::run_scene(scene, shared),
+        Some(Command::Check { scene }) => check::check_scene(scene, shared),
+        Some(Command::List) => print::print(&list::list()),
+    }
+}

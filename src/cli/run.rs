@@ -1,0 +1,109 @@
+//! `materialpoint run`.
+
+use std::path::Path;
+
+use materialpoint::output::Folder;
+use materialpoint::scene::{Outcome, Scene, SceneError, Summary, run};
+use materialpoint::study::write_fields;
+
+use super::Shared;
+use super::bar::bar;
+use super::failure::Failure;
+use super::print::{print, print_json};
+
+/// The scene in the file `name`, or the compiled-in one of that name.
+pub(super) fn load(name: &str, set: &[String]) -> Result<Scene, SceneError> {
+    let path = Path::new(name);
+    match Scene::builtin(name) {
+        Some(text) if !path.exists() => Scene::from_toml(text, set),
+        _ => Scene::from_file(path, set),
+    }
+}
+
+pub(super) fn run_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
+    let scene = load(name, &shared.set)?;
+    let folder = Folder::create(&shared.out)?;
+    let progress_bar = bar(shared.quiet, 0, "steps");
+    let outcome = run(&scene, Some(&folder), &mut |progress| {
+        progress_bar.set_length(progress.steps as u64);
+        progress_bar.set_position(progress.step as u64);
+    });
+    progress_bar.finish_and_clear();
+    let mut outcome = outcome?;
+    outcome.files.push(write_fields(&outcome, &folder)?);
+    if shared.json {
+        return print_json(&outcome.summary);
+    }
+    print(&summary_text(&outcome))
+}
+
+/// The summary for people.
+fn summary_text(outcome: &Outcome) -> String {
+    let Summary {
+        title,
+        method,
+        particles,
+        cells,
+        dofs,
+        steps,
+        time,
+        time_step,
+        wall_seconds,
+        particle_steps_per_second,
+        bytes_per_particle,
+        grid_crossings,
+        reduced_cells,
+        errors,
+        conservation,
+        energy,
+    } = &outcome.summary;
+    let mut lines = vec![title.clone()];
+    lines.push(format!(
+        "  method        {} (degree {}) + {}, {} velocity mass, {} strain, {}",
+        method.basis,
+        method.degree,
+        method.reconstruction,
+        method.velocity_mass,
+        method.strain,
+        method.scalar
+    ));
+    lines.push(format!(
+        "  model         {particles} particles, {cells} cells, {dofs} DOFs"
+    ));
+    lines.push(format!(
+        "  time          {steps} steps of {time_step:.3e} s to {time:.6} s"
+    ));
+    lines.push(format!(
+        "  speed         {wall_seconds:.3} s, {:.2} million particle steps per second, {bytes_per_particle:.0} bytes per particle",
+        particle_steps_per_second / 1e6
+    ));
+    lines.push(format!(
+        "  crossings     {grid_crossings} of cell edges; {reduced_cells} cells fitted with fewer functions at most"
+    ));
+    for (field, norms) in errors {
+        lines.push(format!(
+            "  {field:<13} error: relative L2 {:.3e}, RMS {:.3e}, largest {:.3e}",
+            norms.relative_l2, norms.rms, norms.max
+        ));
+    }
+    for (phase, errors) in conservation {
+        lines.push(format!(
+            "  {phase:<13} conservation error: mass {:.1e}, momentum {:.1e} ({:.1e} of sum m|v|)",
+            errors.mass, errors.momentum, errors.momentum_scaled
+        ));
+    }
+    match (energy.lowest_ratio, energy.highest_ratio) {
+        (Some(lowest), Some(highest)) => lines.push(format!(
+            "  energy        {:.6e} J/m2 at the end; {lowest:.6} to {highest:.6} of the initial on the way",
+            energy.last
+        )),
+        _ => lines.push(format!(
+            "  energy        {:.6e} J/m2 at the end; none at the start",
+            energy.last
+        )),
+    }
+    for file in &outcome.files {
+        lines.push(format!("  wrote         {}", file.display()));
+    }
+    lines.join("\n") + "\n"
+}

@@ -1,0 +1,186 @@
+//! `materialpoint study`, and the default study.
+
+use comfy_table::{CellAlignment, Table, TableComponent, presets};
+use materialpoint::method::{Basis, Method, ReconstructionKind};
+use materialpoint::output::Folder;
+use materialpoint::scene::Scene;
+use materialpoint::study::{Plan, Row, Study, recommendation, study, write_files};
+use serde_json::json;
+
+use super::bar::bar;
+use super::failure::Failure;
+use super::print::{print, print_json};
+use super::run::load;
+use super::{Shared, StudyFlags};
+
+/// Scene of the default study.
+const DEFAULT_SCENE: &str = "vibrating-bar-large";
+/// Its numbers of cells.
+const DEFAULT_CELLS: [usize; 4] = [10, 20, 40, 80];
+
+pub(super) fn default_study(shared: &Shared, flags: &StudyFlags) -> Result<(), Failure> {
+    let scene = Scene::from_toml(Scene::builtin(DEFAULT_SCENE).unwrap_or_default(), &shared.set)?;
+    report(&scene, shared, flags, &DEFAULT_CELLS)
+}
+
+pub(super) fn study_scene(name: &str, shared: &Shared, flags: &StudyFlags) -> Result<(), Failure> {
+    let scene = load(name, &shared.set)?;
+    let own: usize = scene.grid.cells.iter().product();
+    report(&scene, shared, flags, &[own.div_ceil(2), own, 2 * own])
+}
+
+fn report(scene: &Scene, shared: &Shared, flags: &StudyFlags, cells: &[usize]) -> Result<(), Failure> {
+    let plan = plan(flags, cells)?;
+    let folder = Folder::create(&shared.out)?;
+    let progress_bar = bar(
+        shared.quiet,
+        (plan.methods.len() * plan.cells.len()) as u64,
+        "runs",
+    );
+    let done = study(scene, &plan, &mut |run, _, what| {
+        progress_bar.set_position(run as u64);
+        progress_bar.set_message(what.to_owned());
+    });
+    progress_bar.finish_and_clear();
+    let done = done?;
+    let files = write_files(&done, &scene.title, &folder)?;
+    if shared.json {
+        return print_json(&json!({ "rows": done.rows }));
+    }
+    let mut text = report_text(&done, scene);
+    for file in files {
+        text += &format!("wrote {}\n", file.display());
+    }
+    print(&text)
+}
+
+fn plan(flags: &StudyFlags, default_cells: &[usize]) -> Result<Plan, Failure> {
+    let mut cells = if flags.cells.is_empty() {
+        default_cells.to_vec()
+    } else {
+        flags.cells.clone()
+    };
+    cells.sort_unstable();
+    cells.dedup();
+    if cells.first() == Some(&0) {
+        return Err(Failure::Input("--cells: a grid needs at least 1 cell".into()));
+    }
+    if flags.repeat == 0 {
+        return Err(Failure::Input(
+            "--repeat 0: each run must be timed at least once".into(),
+        ));
+    }
+    Ok(Plan {
+        methods: methods(&flags.methods)?,
+        cells,
+        repeat: flags.repeat,
+    })
+}
+
+fn methods(list: &str) -> Result<Vec<Method>, Failure> {
+    if list == "all" {
+        return Ok(Method::NINE.to_vec());
+    }
+    list.split(',').map(|name| method(name.trim())).collect()
+}
+
+/// Any pair of a known basis and a known reconstruction.
+fn method(name: &str) -> Result<Method, Failure> {
+    let bases = [Basis::Linear, Basis::DualDomain]
+        .into_iter()
+        .chain([2, 1, 3].map(|degree| Basis::BSpline { degree }));
+    let kinds = [
+        ReconstructionKind::Shepard,
+        ReconstructionKind::Taylor,
+        ReconstructionKind::Spline,
+    ];
+    bases
+        .flat_map(|basis| kinds.map(|kind| Method::new(basis, kind)))
+        .find(|method| method.to_string() == name)
+        .ok_or_else(|| {
+            Failure::Input(format!(
+                "--methods: there is no method {name:?}; write all, or basis+reconstruction with linear, dual-domain, \
+                 bspline (degree 2), bspline1 or bspline3 and shepard, taylor or spline"
+            ))
+        })
+}
+
+/// The report for people: a table, what its columns mean, and a sentence to act on.
+fn report_text(study: &Study, scene: &Scene) -> String {
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING);
+    table.set_style(TableComponent::HeaderLines, '─');
+    table.set_style(TableComponent::MiddleHeaderIntersections, '─');
+    table.set_header([
+        "method",
+        "cells",
+        "stress error",
+        "order",
+        "u error",
+        "time [s]",
+        "Mps/s",
+        "crossings",
+        "mass",
+        "momentum",
+        "front",
+    ]);
+    for row in &study.rows {
+        table.add_row(cells_of(row));
+    }
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    let stopped: String = study
+        .rows
+        .iter()
+        .filter_map(|row| {
+            Some(format!(
+                "{}, {} cells stopped: {}\n",
+                row.method,
+                row.cells,
+                row.stopped.as_ref()?
+            ))
+        })
+        .collect();
+    format!(
+        "{}\n\n{table}\n\
+         stress, u error: relative L2 against the reference; order: of the stress error; Mps/s: million particle\n\
+         steps per second; mass, momentum: largest conservation error; front: no other row is faster and more accurate\n\
+         \n{stopped}{}\n",
+        scene.title,
+        recommendation(&study.rows, 0.01)
+    )
+}
+
+fn cells_of(row: &Row) -> [String; 11] {
+    let error = |field| {
+        row.errors
+            .get(field)
+            .map_or_else(|| "-".into(), |n| format!("{:.2e}", n.relative_l2))
+    };
+    let order = row
+        .orders
+        .get("stress")
+        .map_or_else(String::new, |order| format!("{order:.1}"));
+    let solid = row.conservation.get("solid");
+    let kept = |pick: fn(&materialpoint::scene::ConservationSummary) -> f64| {
+        solid.map_or_else(|| "-".into(), |errors| format!("{:.0e}", pick(errors)))
+    };
+    [
+        row.method.literature_name(),
+        row.cells.to_string(),
+        if row.stopped.is_some() {
+            "stopped".into()
+        } else {
+            error("stress")
+        },
+        order,
+        error("displacement"),
+        format!("{:.3}", row.wall_seconds),
+        format!("{:.1}", row.particle_steps_per_second / 1e6),
+        row.grid_crossings.to_string(),
+        kept(|errors| errors.mass),
+        kept(|errors| errors.momentum),
+        if row.on_front { "*".into() } else { String::new() },
+    ]
+}

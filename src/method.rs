@@ -1,0 +1,166 @@
+//! The methods by name: one table behind scenes, studies, tests and benches.
+
+use std::fmt;
+
+use crate::basis::{BSpline, BasisFamily, DualDomain, Linear};
+use crate::reconstruction::{CubicSpline, Reconstruction, Shepard, Taylor};
+use crate::scalar::Scalar;
+
+/// A basis family by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Basis {
+    /// [`Linear`].
+    Linear,
+    /// [`DualDomain`].
+    DualDomain,
+    /// [`BSpline`] of degree 1, 2 or 3.
+    BSpline {
+        /// Polynomial degree.
+        degree: usize,
+    },
+}
+
+impl Basis {
+    /// Name in scenes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::DualDomain => "dual-domain",
+            Self::BSpline { .. } => "bspline",
+        }
+    }
+
+    /// Polynomial degree of the values.
+    pub fn degree(self) -> usize {
+        match self {
+            Self::Linear | Self::DualDomain => 1,
+            Self::BSpline { degree } => degree,
+        }
+    }
+}
+
+impl fmt::Display for Basis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::BSpline { degree } if *degree != 2 => write!(f, "bspline{degree}"),
+            _ => f.write_str(self.name()),
+        }
+    }
+}
+
+/// A reconstruction by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ReconstructionKind {
+    /// [`Shepard`].
+    Shepard,
+    /// [`Taylor`].
+    Taylor,
+    /// [`CubicSpline`].
+    Spline,
+}
+
+impl ReconstructionKind {
+    /// Name in scenes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Shepard => "shepard",
+            Self::Taylor => "taylor",
+            Self::Spline => "spline",
+        }
+    }
+}
+
+/// A basis family with a reconstruction, written `basis+reconstruction`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Method {
+    /// The basis family.
+    pub basis: Basis,
+    /// The reconstruction.
+    pub reconstruction: ReconstructionKind,
+}
+
+/// What is done with a method's types. Written once, it compiles for every method.
+pub trait MethodVisitor<T: Scalar> {
+    /// What comes out of it.
+    type Output;
+
+    /// Called with an instance of either type.
+    fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
+    where
+        B: BasisFamily<T, 1> + Send + 'static,
+        R: Reconstruction<T, 1> + Clone + Send + 'static;
+}
+
+impl Method {
+    /// The nine methods of the papers: {MPM, DDMPM, BSMPM} x {Shepard, TLS, spline}.
+    pub const NINE: [Self; 9] = {
+        use ReconstructionKind::{Shepard, Spline, Taylor};
+        const BSPLINE: Basis = Basis::BSpline { degree: 2 };
+        [
+            Self::new(Basis::Linear, Shepard),
+            Self::new(Basis::Linear, Taylor),
+            Self::new(Basis::Linear, Spline),
+            Self::new(Basis::DualDomain, Shepard),
+            Self::new(Basis::DualDomain, Taylor),
+            Self::new(Basis::DualDomain, Spline),
+            Self::new(BSPLINE, Shepard),
+            Self::new(BSPLINE, Taylor),
+            Self::new(BSPLINE, Spline),
+        ]
+    };
+
+    /// A pair.
+    pub const fn new(basis: Basis, reconstruction: ReconstructionKind) -> Self {
+        Self {
+            basis,
+            reconstruction,
+        }
+    }
+
+    /// Name in the literature: MPM, DDMPM or BSMPM, with TLS or cubic spline where there is one.
+    pub fn literature_name(self) -> String {
+        let basis = match self.basis {
+            Basis::Linear => "MPM".into(),
+            Basis::DualDomain => "DDMPM".into(),
+            Basis::BSpline { degree: 2 } => "BSMPM".into(),
+            Basis::BSpline { degree } => format!("BSMPM degree {degree}"),
+        };
+        match self.reconstruction {
+            ReconstructionKind::Shepard => basis,
+            ReconstructionKind::Taylor => format!("{basis} + TLS"),
+            ReconstructionKind::Spline => format!("{basis} + spline"),
+        }
+    }
+
+    /// Calls `visitor` with the method's types, in 1-D. `None` for a degree that does not exist.
+    pub fn dispatch<T: Scalar, V: MethodVisitor<T>>(self, visitor: V) -> Option<V::Output> {
+        match self.basis {
+            Basis::Linear => Some(self.with_basis(Linear, visitor)),
+            Basis::DualDomain => Some(self.with_basis(DualDomain, visitor)),
+            Basis::BSpline { degree: 1 } => Some(self.with_basis(BSpline::<1>, visitor)),
+            Basis::BSpline { degree: 2 } => Some(self.with_basis(BSpline::<2>, visitor)),
+            Basis::BSpline { degree: 3 } => Some(self.with_basis(BSpline::<3>, visitor)),
+            Basis::BSpline { .. } => None,
+        }
+    }
+
+    fn with_basis<T, B, V>(self, basis: B, visitor: V) -> V::Output
+    where
+        T: Scalar,
+        B: BasisFamily<T, 1> + Send + 'static,
+        V: MethodVisitor<T>,
+    {
+        let degree = basis.degree();
+        match self.reconstruction {
+            ReconstructionKind::Shepard => visitor.visit(basis, Shepard),
+            ReconstructionKind::Taylor => visitor.visit(basis, Taylor::<T, 1, 3>::for_degree(degree)),
+            ReconstructionKind::Spline => visitor.visit(basis, CubicSpline::for_degree(degree)),
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}+{}", self.basis, self.reconstruction.name())
+    }
+}

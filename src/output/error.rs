@@ -1,0 +1,57 @@
+//! What can go wrong on the way to the disk.
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Output that cannot be written.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// The folder does not exist and cannot be made.
+    #[error("the output folder `{}` cannot be created ({source}); choose another folder", path.display())]
+    Create {
+        /// The folder asked for.
+        path: PathBuf,
+        /// What the system answered.
+        source: io::Error,
+    },
+    /// The folder exists, but no file can be put into it.
+    #[error("the output folder `{}` cannot be written to ({source}); choose another folder", path.display())]
+    NotWritable {
+        /// The folder asked for.
+        path: PathBuf,
+        /// What the system answered.
+        source: io::Error,
+    },
+    /// One file cannot be written; an older file of that name is still as it was.
+    #[error("the file `{}` cannot be written ({source})", path.display())]
+    Write {
+        /// The file asked for.
+        path: PathBuf,
+        /// What the system answered.
+        source: io::Error,
+    },
+    /// A table whose header and columns differ in number.
+    #[error("the table `{}` has {names} names for {columns} columns", path.display())]
+    Header {
+        /// The file asked for.
+        path: PathBuf,
+        /// Names in the header.
+        names: usize,
+        /// Columns, or fields of the row at fault.
+        columns: usize,
+    },
+    /// A table whose columns have different lengths.
+    #[error("the table `{}` has {found} values in column `{column}` but {expected} in the first", path.display())]
+    Columns {
+        /// The file asked for.
+        path: PathBuf,
+        /// Name of the column at fault.
+        column: String,
+        /// Its length.
+        found: usize,
+        /// Length of the first column.
+        expected: usize,
+    },
+}

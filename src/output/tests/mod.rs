@@ -1,0 +1,4 @@
+//! Files and pictures, with good and degenerate data.
+
+mod files;
+mod pictures;

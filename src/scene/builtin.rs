@@ -1,0 +1,27 @@
+//! Scenes that are compiled in.
+
+/// Names and texts; the first is the default.
+const SCENES: [(&str, &str); 3] = [
+    (
+        "vibrating-bar-large",
+        include_str!("../../examples/scenes/vibrating-bar-large.toml"),
+    ),
+    (
+        "vibrating-bar-small",
+        include_str!("../../examples/scenes/vibrating-bar-small.toml"),
+    ),
+    (
+        "column-compaction",
+        include_str!("../../examples/scenes/column-compaction.toml"),
+    ),
+];
+
+/// Text of the scene `name`.
+pub(super) fn text(name: &str) -> Option<&'static str> {
+    SCENES.iter().find(|scene| scene.0 == name).map(|scene| scene.1)
+}
+
+/// All names.
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    SCENES.iter().map(|scene| scene.0)
+}

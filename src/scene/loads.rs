@@ -1,0 +1,37 @@
+//! Loads and boundary values of a scene, step by step.
+
+use nalgebra::SVector;
+
+use super::run::RunError;
+use super::{BoundaryKind, Expression, Scene};
+use crate::stepper::{FaceCondition, Forcing};
+
+/// Evaluates the scene's expressions for the step from `time` to `time + dt`: loads at its start, told
+/// velocities in its middle, where Euler-Cromer's velocity lives (but never before time zero).
+pub(super) fn forcing(scene: &Scene, time: f64, dt: f64) -> Result<Forcing<f64, 1>, RunError> {
+    let mut forcing = Forcing::none();
+    if let Some(body_force) = &scene.body_force {
+        forcing.body_force = vector(body_force, time)?;
+    }
+    for boundary in &scene.boundaries {
+        let condition = match &boundary.kind {
+            BoundaryKind::Fixed => FaceCondition::fixed(),
+            BoundaryKind::Velocity(velocity) => {
+                let (before, after) = ((time - dt / 2.0).max(0.0), time + dt / 2.0);
+                let (start, end) = (vector(velocity, before)?, vector(velocity, after)?);
+                FaceCondition::moving(end, (end - start) / (after - before))
+            }
+            BoundaryKind::Traction(traction) => FaceCondition::Traction(vector(traction, time)?),
+        };
+        forcing.set_face(boundary.face, condition);
+    }
+    Ok(forcing)
+}
+
+fn vector(expressions: &[Expression], time: f64) -> Result<SVector<f64, 1>, RunError> {
+    let mut value = SVector::<f64, 1>::zeros();
+    for (component, expression) in value.iter_mut().zip(expressions) {
+        *component = expression.eval_time(time)?;
+    }
+    Ok(value)
+}

@@ -1,0 +1,158 @@
+//! `[[body]]`
+
+use super::grid::{is_blurred, precision_hint};
+use super::{Item, MOST, Section};
+use crate::scene::expression::coordinates;
+use crate::scene::{Body, GridSpec, ScalarKind, SceneError};
+
+const KEYS: [&str; 8] = [
+    "min",
+    "max",
+    "particles_per_cell",
+    "velocity",
+    "stress",
+    "jitter",
+    "seed",
+    "initialise",
+];
+
+const TWO_PHASE_KEYS: [&str; 2] = ["liquid_velocity", "pore_pressure"];
+
+pub(super) fn read(root: &Section<'_>, grid: &GridSpec, scalar: ScalarKind) -> Result<Vec<Body>, SceneError> {
+    let expected = "at least one table, written [[body]]";
+    let item = root.required("body", expected)?;
+    let entries = item.list(expected)?;
+    if entries.is_empty() {
+        return Err(item.not_allowed(expected));
+    }
+    let mut bodies: Vec<Body> = Vec::new();
+    let mut particles = 0.0;
+    for entry in &entries {
+        let section = entry.section(expected)?.allow(&KEYS, &TWO_PHASE_KEYS)?;
+        let body = one(&section, grid)?;
+        if let Some(index) = bodies.iter().position(|other| overlap(&body, other)) {
+            let problem = format!("the body overlaps body.{index}; expected bodies that at most touch");
+            return Err(section.required("min", expected)?.conflict(&problem));
+        }
+        let per_cell = section.required("particles_per_cell", expected)?;
+        particles += check_particles(&per_cell, &body, grid, scalar)?;
+        if particles > MOST as f64 {
+            let problem =
+                format!("that makes {particles:e} particles; expected at most {MOST} in all bodies");
+            return Err(per_cell.conflict(&problem));
+        }
+        bodies.push(body);
+    }
+    Ok(bodies)
+}
+
+fn one(section: &Section<'_>, grid: &GridSpec) -> Result<Body, SceneError> {
+    let dimension = grid.cells.len();
+    let (min, max) = corners(section, grid)?;
+    let per_cell = section.required("particles_per_cell", "a list of whole numbers, one per axis")?;
+    if let Some(item) = section.optional("initialise") {
+        item.choice(&[("exact", ())], &["dofs"])?;
+    }
+    let body = Body {
+        particles_per_cell: per_cell.per_axis(dimension, "whole numbers", |n| n.size(1, MOST))?,
+        velocity: match section.optional("velocity") {
+            Some(item) => {
+                Some(item.per_axis(dimension, "expressions", |v| v.expression(coordinates(dimension)))?)
+            }
+            None => None,
+        },
+        stress: match section.optional("stress") {
+            Some(item) => Some(item.expression(coordinates(dimension))?),
+            None => None,
+        },
+        jitter: match section.optional("jitter") {
+            Some(item) => item.number_where("a fraction of the particles' spacing, 0 to 1", |fraction| {
+                (0.0..=1.0).contains(&fraction)
+            })?,
+            None => 0.0,
+        },
+        seed: match section.optional("seed") {
+            Some(item) => item.count(0, u64::MAX)?,
+            None => 0,
+        },
+        min,
+        max,
+    };
+    check_values(&body)?;
+    Ok(body)
+}
+
+fn corners(section: &Section<'_>, grid: &GridSpec) -> Result<(Vec<f64>, Vec<f64>), SceneError> {
+    let min_item = section.required("min", "the lower corner (m), a list of numbers")?;
+    let max_item = section.required("max", "the upper corner (m), a list of numbers")?;
+    let read = |item: &Item<'_>| {
+        item.per_axis(grid.cells.len(), "numbers (m)", |x| {
+            x.number("a finite number (m)")
+        })
+    };
+    let (min, max) = (read(&min_item)?, read(&max_item)?);
+    let bounds = grid.min.iter().zip(&grid.max);
+    for ((low, high), (grid_low, grid_high)) in min.iter().zip(&max).zip(bounds) {
+        let grid_range = format!("within the grid, {grid_low:?} to {grid_high:?} m");
+        if low < grid_low || low > grid_high {
+            return Err(min_item.not_allowed(&grid_range));
+        }
+        if high < grid_low || high > grid_high {
+            return Err(max_item.not_allowed(&grid_range));
+        }
+        if high <= low {
+            return Err(max_item.not_allowed(&format!("more than the body's min, {low:?} m")));
+        }
+    }
+    Ok((min, max))
+}
+
+/// Refuses a velocity or stress that is not finite at the body's ends or middle. A hint: particles lie
+/// elsewhere too.
+fn check_values(body: &Body) -> Result<(), SceneError> {
+    for part in [0.0, 0.5, 1.0] {
+        let corners = body.min.iter().zip(&body.max);
+        let point: Vec<f64> = corners.map(|(min, max)| min + part * (max - min)).collect();
+        for expression in body.velocity.iter().flatten().chain(&body.stress) {
+            expression.eval_at(&point)?;
+        }
+    }
+    Ok(())
+}
+
+/// Bodies that share more than a face.
+fn overlap(a: &Body, b: &Body) -> bool {
+    let low = a.min.iter().zip(&b.min).map(|(a, b)| a.max(*b));
+    let high = a.max.iter().zip(&b.max).map(|(a, b)| a.min(*b));
+    low.zip(high).all(|(low, high)| low < high)
+}
+
+/// Number of particles; refuses those that the scalar type cannot tell apart.
+fn check_particles(
+    per_cell_item: &Item<'_>,
+    body: &Body,
+    grid: &GridSpec,
+    scalar: ScalarKind,
+) -> Result<f64, SceneError> {
+    let mut total = 1.0;
+    for axis in 0..grid.cells.len() {
+        let at = |values: &[f64]| values.get(axis).copied().unwrap_or(f64::NAN);
+        let cells = grid.cells.get(axis).copied().unwrap_or(1) as f64;
+        let per_cell = body.particles_per_cell.get(axis).copied().unwrap_or(1) as f64;
+        let extent = at(&body.max) - at(&body.min);
+        let cell_size = (at(&grid.max) - at(&grid.min)) / cells;
+        // As `particles::lattice` counts them.
+        let count = (extent / cell_size * per_cell).round().max(1.0);
+        let reach = at(&body.min).abs().max(at(&body.max).abs());
+        if is_blurred(extent / count, reach, scalar) {
+            return Err(per_cell_item.conflict(&format!(
+                "a spacing of {:?} m is lost in the round-off of coordinates up to {reach:?} m; expected fewer \
+                 particles or coordinates nearer to 0{}",
+                extent / count,
+                precision_hint(scalar)
+            )));
+        }
+        total *= count;
+    }
+    Ok(total)
+}

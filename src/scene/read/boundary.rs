@@ -1,0 +1,78 @@
+//! `[[boundary]]`
+
+use super::{Item, Section, check_over_time};
+use crate::grid::{Face, Side};
+use crate::scene::text::one_of;
+use crate::scene::{Boundary, BoundaryKind, Expression, GridSpec, SceneError};
+
+const KEYS: [&str; 4] = ["face", "fixed", "velocity", "traction"];
+const KINDS: [&str; 3] = ["fixed", "velocity", "traction"];
+const TWO_PHASE_KEYS: [&str; 2] = ["drained", "pore_pressure"];
+
+pub(super) fn read(root: &Section<'_>, grid: &GridSpec, end: f64) -> Result<Vec<Boundary>, SceneError> {
+    let Some(item) = root.optional("boundary") else {
+        return Ok(Vec::new());
+    };
+    let mut boundaries: Vec<Boundary> = Vec::new();
+    for entry in item.list("tables, written [[boundary]]")? {
+        let section = entry.section("a table, written [[boundary]]")?;
+        let section = section.allow(&KEYS, &TWO_PHASE_KEYS)?;
+        let face = face(&section, grid.cells.len())?;
+        if let Some(other) = boundaries.iter().position(|other| other.face == face.1) {
+            let problem =
+                format!("boundary.{other} is about that face already; expected one [[boundary]] a face");
+            return Err(face.0.conflict(&problem));
+        }
+        boundaries.push(Boundary {
+            face: face.1,
+            kind: kind(&entry, &section, grid.cells.len(), end)?,
+        });
+    }
+    Ok(boundaries)
+}
+
+fn face<'a>(section: &Section<'a>, dimension: usize) -> Result<(Item<'a>, Face), SceneError> {
+    let axes = (0..dimension).flat_map(|axis| [Side::Min, Side::Max].map(|side| Face { axis, side }));
+    let faces: Vec<(String, Face)> = axes.map(|face| (face.to_string(), face)).collect();
+    let allowed: Vec<(&str, Face)> = faces.iter().map(|(name, face)| (name.as_str(), *face)).collect();
+    let item = section.required("face", &one_of(allowed.iter().map(|face| face.0)))?;
+    let face = item.choice(&allowed, &[])?;
+    Ok((item, face))
+}
+
+fn kind(
+    entry: &Item<'_>,
+    section: &Section<'_>,
+    dimension: usize,
+    end: f64,
+) -> Result<BoundaryKind, SceneError> {
+    let found = section.present(&KINDS);
+    let [kind] = found.as_slice() else {
+        let found = match found.is_empty() {
+            true => "none of them".to_string(),
+            false => found.join(" and "),
+        };
+        let problem = format!("expected exactly one of fixed, velocity, traction; found {found}");
+        return Err(entry.conflict(&problem));
+    };
+    let item = section.required(kind, "a value")?;
+    match *kind {
+        "fixed" => fixed(&item),
+        "velocity" => Ok(BoundaryKind::Velocity(in_time(&item, dimension, end)?)),
+        _ => Ok(BoundaryKind::Traction(in_time(&item, dimension, end)?)),
+    }
+}
+
+fn fixed(item: &Item<'_>) -> Result<BoundaryKind, SceneError> {
+    let expected = "true; a face that no [[boundary]] names is free";
+    match item.flag(expected)? {
+        true => Ok(BoundaryKind::Fixed),
+        false => Err(item.not_allowed(expected)),
+    }
+}
+
+fn in_time(item: &Item<'_>, dimension: usize, end: f64) -> Result<Vec<Expression>, SceneError> {
+    let expressions = item.per_axis(dimension, "expressions in t", |e| e.expression(&["t"]))?;
+    check_over_time(&expressions, end)?;
+    Ok(expressions)
+}

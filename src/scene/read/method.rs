@@ -1,0 +1,106 @@
+//! `[method]`
+
+use super::{Item, Section};
+use crate::mass::VelocityMass;
+use crate::scene::{Basis, Method, ReconstructionKind, ScalarKind, SceneError};
+
+const KEYS: [&str; 6] = [
+    "basis",
+    "degree",
+    "reconstruction",
+    "subpoints",
+    "velocity_mass",
+    "scalar",
+];
+
+const RECONSTRUCTIONS: [(&str, ReconstructionKind); 3] = [
+    ("shepard", ReconstructionKind::Shepard),
+    ("taylor", ReconstructionKind::Taylor),
+    ("spline", ReconstructionKind::Spline),
+];
+
+/// `dimension` is the number of the grid's axes.
+pub(super) fn read(section: Section<'_>, dimension: usize) -> Result<Method, SceneError> {
+    let section = section.allow(&KEYS, &[])?;
+    let basis = basis(&section)?;
+    let reconstruction = reconstruction(&section, dimension)?;
+    if let Some(item) = section.optional("subpoints") {
+        check_subpoints(&item, basis, reconstruction)?;
+    }
+    Ok(Method {
+        basis,
+        reconstruction,
+        velocity_mass: velocity_mass(&section, reconstruction)?,
+        scalar: match section.optional("scalar") {
+            Some(item) => item.choice(&[("f64", ScalarKind::F64), ("f32", ScalarKind::F32)], &[])?,
+            None => ScalarKind::default(),
+        },
+    })
+}
+
+fn basis(section: &Section<'_>) -> Result<Basis, SceneError> {
+    let item = section.required("basis", "\"linear\", \"dual-domain\" or \"bspline\"")?;
+    let degree = section.optional("degree");
+    let allowed = [
+        ("linear", Basis::Linear),
+        ("dual-domain", Basis::DualDomain),
+        ("bspline", Basis::BSpline { degree: 2 }),
+    ];
+    match (item.choice(&allowed, &[])?, degree) {
+        (Basis::BSpline { .. }, Some(degree)) => Ok(Basis::BSpline {
+            degree: degree.size(1, 3)?,
+        }),
+        (_, Some(degree)) => {
+            Err(degree.conflict("it goes with method.basis = \"bspline\" only; leave it out"))
+        }
+        (basis, None) => Ok(basis),
+    }
+}
+
+fn reconstruction(section: &Section<'_>, dimension: usize) -> Result<ReconstructionKind, SceneError> {
+    let item = section.required("reconstruction", "\"shepard\", \"taylor\" or \"spline\"")?;
+    let reconstruction = item.choice(&RECONSTRUCTIONS, &["relaxed-taylor"])?;
+    if reconstruction == ReconstructionKind::Spline && dimension > 1 {
+        return Err(item.conflict(&format!(
+            "a cubic spline exists in 1-D only and the grid has {dimension} axes; expected \"shepard\" or \"taylor\""
+        )));
+    }
+    Ok(reconstruction)
+}
+
+/// One sub-point is the particle itself, which is what this version does.
+fn check_subpoints(
+    item: &Item<'_>,
+    basis: Basis,
+    reconstruction: ReconstructionKind,
+) -> Result<(), SceneError> {
+    if (basis, reconstruction) != (Basis::DualDomain, ReconstructionKind::Shepard) {
+        return Err(item.conflict(
+            "it goes with method.basis = \"dual-domain\" and method.reconstruction = \"shepard\" only; leave it out",
+        ));
+    }
+    match item.count(1, u64::MAX)? {
+        1 => Ok(()),
+        _ => Err(item.not_in_this_version("1")),
+    }
+}
+
+fn velocity_mass(
+    section: &Section<'_>,
+    reconstruction: ReconstructionKind,
+) -> Result<VelocityMass, SceneError> {
+    let default = Method::default_velocity_mass(reconstruction);
+    let Some(item) = section.optional("velocity_mass") else {
+        return Ok(default);
+    };
+    let allowed = [
+        ("consistent", VelocityMass::Consistent),
+        ("constrained", VelocityMass::Constrained),
+        ("lumped", VelocityMass::Lumped),
+    ];
+    let mass = item.choice(&allowed, &[])?;
+    if reconstruction == ReconstructionKind::Shepard && mass != VelocityMass::Lumped {
+        return Err(item.conflict("shepard is always lumped; expected \"lumped\", or leave it out"));
+    }
+    Ok(mass)
+}

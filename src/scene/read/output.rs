@@ -1,0 +1,25 @@
+//! `[output]`
+
+use super::Section;
+use crate::scene::{OutputSpec, ParticleOutput, SceneError};
+
+pub(super) fn read(root: &Section<'_>) -> Result<OutputSpec, SceneError> {
+    let mut output = OutputSpec::default();
+    let Some(section) = root.optional_section("output")? else {
+        return Ok(output);
+    };
+    let section = section.allow(&["particles", "every", "checkpoint_every"], &[])?;
+    if let Some(item) = section.optional("particles") {
+        let allowed = [("csv", ParticleOutput::Csv), ("none", ParticleOutput::None)];
+        output.particles = item.choice(&allowed, &["vtu"])?;
+    }
+    if let Some(item) = section.optional("every") {
+        output.every = item.size(0, u64::MAX)?;
+    }
+    if let Some(item) = section.optional("checkpoint_every")
+        && item.count(0, u64::MAX)? != 0
+    {
+        return Err(item.not_in_this_version("0"));
+    }
+    Ok(output)
+}

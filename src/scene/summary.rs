@@ -1,0 +1,172 @@
+//! Figures of a run, as `run --json` prints them.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::norms::ErrorNorms;
+use super::run::March;
+use super::schedule::Schedule;
+use super::{Law, ScalarKind, Scene};
+use crate::stepper::{Conservation, Simulation};
+
+/// The method and the model of a run, by name.
+#[derive(Clone, Debug, Serialize)]
+pub struct MethodSummary {
+    /// Basis family.
+    pub basis: &'static str,
+    /// Its degree.
+    pub degree: usize,
+    /// Reconstruction.
+    pub reconstruction: &'static str,
+    /// Mass behind the DOF velocities.
+    pub velocity_mass: &'static str,
+    /// Number of phases.
+    pub phases: usize,
+    /// Constitutive law.
+    pub law: &'static str,
+    /// `small` or `large`.
+    pub strain: &'static str,
+    /// Floating-point type.
+    pub scalar: &'static str,
+    /// Number of axes.
+    pub dimension: usize,
+}
+
+impl MethodSummary {
+    /// Of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let (law, strain) = match scene.material.law {
+            Law::LinearElastic { .. } => ("linear-elastic", "small"),
+            Law::Hill { .. } => ("linear-elastic", "large"),
+            Law::NeoHookean { .. } => ("neo-hookean", "large"),
+        };
+        Self {
+            basis: scene.method.basis.name(),
+            degree: scene.method.basis.degree(),
+            reconstruction: scene.method.reconstruction.name(),
+            velocity_mass: scene.method.velocity_mass.name(),
+            phases: 1,
+            law,
+            strain,
+            scalar: match scene.method.scalar {
+                ScalarKind::F64 => "f64",
+                ScalarKind::F32 => "f32",
+            },
+            dimension: scene.dimension(),
+        }
+    }
+}
+
+/// Largest conservation errors of one phase.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ConservationSummary {
+    /// Relative to the mass.
+    pub mass: f64,
+    /// Relative to the momentum.
+    pub momentum: f64,
+    /// Relative to the sum of m |v|.
+    pub momentum_scaled: f64,
+}
+
+impl From<Conservation<f64>> for ConservationSummary {
+    fn from(errors: Conservation<f64>) -> Self {
+        Self {
+            mass: errors.mass,
+            momentum: errors.momentum,
+            momentum_scaled: errors.momentum_scaled,
+        }
+    }
+}
+
+/// Kinetic plus strain energy of a run; ratios to the initial one, absent where that is zero.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EnergySummary {
+    /// At the start (J/m2).
+    pub initial: f64,
+    /// At the end (J/m2).
+    #[serde(rename = "final")]
+    pub last: f64,
+    /// Highest over initial.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub highest_ratio: Option<f64>,
+    /// Lowest over initial.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lowest_ratio: Option<f64>,
+}
+
+/// Figures of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Title of the scene.
+    pub title: String,
+    /// Method and model.
+    pub method: MethodSummary,
+    /// Number of particles.
+    pub particles: usize,
+    /// Number of cells.
+    pub cells: usize,
+    /// Number of DOFs.
+    pub dofs: usize,
+    /// Steps taken.
+    pub steps: usize,
+    /// Time reached (s).
+    pub time: f64,
+    /// Size of a step (s).
+    pub time_step: f64,
+    /// Time of the step loop on the clock (s).
+    pub wall_seconds: f64,
+    /// Particles times steps per second.
+    pub particle_steps_per_second: f64,
+    /// Memory per particle, the grid's share included.
+    pub bytes_per_particle: f64,
+    /// How often a particle changed its cell.
+    pub grid_crossings: usize,
+    /// Most cells in one step that were fitted with fewer functions than the method's.
+    pub reduced_cells: usize,
+    /// Errors by field.
+    pub errors: BTreeMap<&'static str, ErrorNorms>,
+    /// Conservation by phase.
+    pub conservation: BTreeMap<&'static str, ConservationSummary>,
+    /// Energy.
+    pub energy: EnergySummary,
+}
+
+impl Summary {
+    pub(super) fn new(
+        scene: &Scene,
+        simulation: &dyn Simulation<1>,
+        schedule: &Schedule,
+        march: March,
+        errors: BTreeMap<&'static str, ErrorNorms>,
+    ) -> Self {
+        let wall_seconds = march.wall.as_secs_f64();
+        let particles = simulation.particle_count();
+        let diagnostics = simulation.diagnostics();
+        let energy = march.energy;
+        let ratio = |value: f64| (energy.initial > 0.0).then(|| value / energy.initial);
+        Self {
+            title: scene.title.clone(),
+            method: MethodSummary::of(scene),
+            particles,
+            cells: scene.grid.cells.iter().product(),
+            dofs: simulation.dof_count(),
+            steps: schedule.steps,
+            time: schedule.end,
+            time_step: schedule.dt,
+            wall_seconds,
+            particle_steps_per_second: particles as f64 * schedule.steps as f64 / wall_seconds,
+            bytes_per_particle: simulation.bytes_per_particle(),
+            grid_crossings: diagnostics.grid_crossings,
+            reduced_cells: diagnostics.reduced_cells,
+            errors,
+            conservation: BTreeMap::from([("solid", diagnostics.conservation.into())]),
+            energy: EnergySummary {
+                initial: energy.initial,
+                last: energy.last,
+                highest_ratio: ratio(energy.highest),
+                lowest_ratio: ratio(energy.lowest),
+            },
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! The command as a user meets it: exit status, what stands on standard output and on standard error, files.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Runs the command with its files in a folder of the test's own.
+fn materialpoint(test: &str, arguments: &[&str]) -> (Output, PathBuf) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let output = Command::new(env!("CARGO_BIN_EXE_materialpoint"))
+        .args(arguments)
+        .args(["--out".as_ref(), folder.as_os_str()])
+        .output()
+        .unwrap();
+    (output, folder)
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Status, and a single clear sentence on standard error that holds all `fragments`.
+#[track_caller]
+fn assert_refused(output: &Output, status: i32, fragments: &[&str]) {
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(status), "{message}");
+    assert!(message.lines().count() <= 2, "{message}");
+    assert!(!message.contains("panicked"), "{message}");
+    for fragment in fragments {
+        assert!(message.contains(fragment), "{message:?} lacks {fragment:?}");
+    }
+    assert!(output.stdout.is_empty(), "{}", text(&output.stdout));
+}
+
+#[test]
+fn run_prints_one_json_object_and_nothing_else() {
+    let (output, folder) = materialpoint("run-json", &["run", "vibrating-bar-large", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for key in [
+        "title",
+        "method",
+        "particles",
+        "cells",
+        "dofs",
+        "steps",
+        "time",
+        "time_step",
+        "wall_seconds",
+        "particle_steps_per_second",
+        "bytes_per_particle",
+        "grid_crossings",
+        "errors",
+        "conservation",
+        "energy",
+    ] {
+        assert!(!summary[key].is_null(), "{key}");
+    }
+    for key in [
+        "basis",
+        "degree",
+        "reconstruction",
+        "velocity_mass",
+        "phases",
+        "law",
+        "strain",
+        "scalar",
+        "dimension",
+    ] {
+        assert!(!summary["method"][key].is_null(), "method.{key}");
+    }
+    for field in ["displacement", "velocity", "stress"] {
+        for norm in ["rms", "relative_l2", "max"] {
+            assert!(summary["errors"][field][norm].is_f64(), "{field} {norm}");
+        }
+    }
+    for key in ["initial", "final", "highest_ratio", "lowest_ratio"] {
+        assert!(summary["energy"][key].is_f64(), "{key}");
+    }
+    assert!(summary["conservation"]["solid"]["momentum_scaled"].is_f64());
+    assert!(folder.join("fields.svg").exists());
+}
+
+#[test]
+fn particles_are_written_with_their_units_and_all_digits() {
+    let (output, folder) = materialpoint(
+        "run-csv",
+        &[
+            "run",
+            "vibrating-bar-small",
+            "--set",
+            "output.every=10",
+            "--quiet",
+        ],
+    );
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(output.stderr.is_empty());
+    let csv = std::fs::read_to_string(folder.join("particles.csv")).unwrap();
+    let mut lines = csv.lines();
+    let header = "x0[m],x[m],u[m],v[m/s],stress[Pa],density[kg/m3],volume[m]";
+    assert_eq!(lines.next(), Some(header));
+    assert_eq!(lines.count(), 40 * 12);
+    assert!(folder.join("particles-00000010.csv").exists());
+}
+
+#[test]
+fn the_default_command_compares_nine_methods_and_draws_them() {
+    let (output, folder) = materialpoint("default", &["--json", "--cells", "10,20"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let study: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = study["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 18);
+    for row in rows {
+        for key in [
+            "basis",
+            "reconstruction",
+            "cells",
+            "errors",
+            "orders",
+            "wall_seconds",
+            "particle_steps_per_second",
+            "conservation",
+            "on_front",
+        ] {
+            assert!(!row[key].is_null(), "{key}");
+        }
+    }
+    assert!(rows.iter().any(|row| row["on_front"] == true));
+    for file in ["study.csv", "study.svg", "fields.svg"] {
+        assert!(folder.join(file).exists(), "{file}");
+    }
+    let (table, _) = materialpoint(
+        "default-table",
+        &["--cells", "20", "--methods", "bspline+taylor,linear+shepard"],
+    );
+    let table = text(&table.stdout);
+    assert!(
+        table.contains("BSMPM + TLS") && table.contains("the cheapest here is"),
+        "{table}"
+    );
+}
+
+#[test]
+fn check_names_the_largest_stable_step_and_what_limits_it() {
+    let (output, _) = materialpoint("check", &["check", "vibrating-bar-large", "--json"]);
+    let check: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // In units of h/c; `convergence::critical_step` confirms such figures by bisection.
+    let critical = check["critical_time_step"].as_f64().unwrap() / (0.05 / 20.0_f64.sqrt());
+    assert!((critical - 1.39).abs() < 0.01, "{critical}");
+    assert!(check["mechanism"].as_str().unwrap().contains("wave"));
+    assert_eq!(check["stable"], true);
+}
+
+#[test]
+fn list_names_everything_a_scene_can_ask_for() {
+    let (output, _) = materialpoint("list", &["list"]);
+    let list = text(&output.stdout);
+    for name in [
+        "linear",
+        "dual-domain",
+        "bspline",
+        "shepard",
+        "taylor",
+        "spline",
+        "linear-elastic",
+        "neo-hookean",
+        "vibrating-bar",
+        "column-compaction",
+        "vibrating-bar-small",
+    ] {
+        assert!(list.contains(name), "{name}");
+    }
+}
+
+#[test]
+fn bad_flags_and_scenes_end_with_status_two() {
+    let refused = |test, arguments: &[&str], fragments: &[&str]| {
+        assert_refused(&materialpoint(test, arguments).0, 2, fragments);
+    };
+    refused("no-file", &["run", "nowhere.toml"], &["nowhere.toml"]);
+    refused(
+        "bad-set",
+        &["run", "vibrating-bar-large", "--set", "grid.cells=[0]"],
+        &["grid.cells"],
+    );
+    refused(
+        "bad-cells",
+        &["study", "vibrating-bar-large", "--cells", "0"],
+        &["--cells"],
+    );
+    refused("bad-repeat", &["--repeat", "0"], &["--repeat"]);
+    refused(
+        "bad-method",
+        &["--methods", "linear+magic"],
+        &["linear+magic", "taylor"],
+    );
+    let (output, _) = materialpoint("bad-flag", &["run", "vibrating-bar-large", "--frobnicate"]);
+    assert_eq!(output.status.code(), Some(2));
+    let set = ["--set", "reference={}"];
+    let (output, _) = materialpoint(
+        "no-reference",
+        &[&["study", "vibrating-bar-large"], &set[..]].concat(),
+    );
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn an_unwritable_folder_ends_with_status_three_before_anything_is_computed() {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("a-file");
+    std::fs::write(&file, "no folder").unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_materialpoint"))
+        .args(["run", "vibrating-bar-large", "--out"])
+        .arg(file.join("below"))
+        .output()
+        .unwrap();
+    assert_refused(&output, 3, &["a-file"]);
+}
+
+/// A time step ten times the critical one: the message names the step, the particle and the largest stable step, and what
+/// was written before stays readable.
+#[test]
+fn an_unstable_run_stops_with_the_step_the_particle_and_the_stable_step() {
+    for method in ["shepard", "taylor", "spline"] {
+        let name = format!("unstable-{method}");
+        let reconstruction = format!("method.reconstruction=\"{method}\"");
+        let arguments = [
+            "run",
+            "vibrating-bar-large",
+            "--set",
+            &reconstruction,
+            "--set",
+            "time.step=0.1",
+            "--set",
+            "time.end=100.0",
+            "--set",
+            "output.every=1",
+        ];
+        let (output, folder) = materialpoint(&name, &arguments);
+        assert_refused(&output, 3, &["step ", "particle ", "largest stable step"]);
+        let first = folder.join("particles-00000001.csv");
+        if let Ok(csv) = std::fs::read_to_string(first) {
+            assert_eq!(csv.lines().count(), 1 + 160);
+            assert!(
+                csv.lines()
+                    .skip(1)
+                    .all(|line| line.split(',').all(|field| field.parse::<f64>().is_ok()))
+            );
+        }
+    }
+}

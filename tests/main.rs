@@ -1,0 +1,7 @@
+//! One binary for all integration tests: shared helpers compile once.
+
+mod command;
+mod conservation;
+mod convergence;
+mod examples;
+mod scenes;

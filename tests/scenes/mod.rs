@@ -1,0 +1,3 @@
+//! Scenes as people write them.
+
+mod malformed;
