@@ -5,8 +5,8 @@
 use std::error::Error;
 use std::f64::consts::PI;
 
-use materialpoint::basis::{AxisFamily, BasisFamily, Row, tensor};
-use materialpoint::grid::{Cell, Grid};
+use materialpoint::basis::{AxisFamily, Row};
+use materialpoint::grid::Grid;
 use materialpoint::law::{LinearElastic, Moduli};
 use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
@@ -14,7 +14,7 @@ use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Taylor;
 use materialpoint::scalar::Scalar;
 use materialpoint::stepper::{Forcing, Setup, Stepper};
-use nalgebra::{SVector, vector};
+use nalgebra::vector;
 
 /// Quadratic B-splines on plain uniform knots, as many MPM codes use them: every cell has the same three functions.
 /// No function interpolates at the ends, so a wall cannot be held exactly; a free body does not mind.
@@ -39,26 +39,7 @@ impl<T: Scalar> AxisFamily<T, 3> for UniformQuadratic {
 }
 
 // In every dimension: the product of the one-axis functions.
-impl<T: Scalar, const D: usize> BasisFamily<T, D> for UniformQuadratic {
-    fn degree(&self) -> usize {
-        2
-    }
-
-    fn dofs(&self, grid: &Grid<T, D>) -> [usize; D] {
-        tensor::dofs::<T, D, 3, _>(self, grid)
-    }
-
-    #[inline(always)]
-    fn for_each(
-        &self,
-        grid: &Grid<T, D>,
-        cell: &Cell<D>,
-        x: &SVector<T, D>,
-        f: impl FnMut(usize, T, SVector<T, D>),
-    ) {
-        tensor::for_each::<T, D, 3, _>(self, grid, cell, x, f);
-    }
-}
+materialpoint::tensor_product_family!(UniformQuadratic, width = 3, degree = 2);
 
 /// Lets a free bar vibrate for one period; returns the largest ratio of energy to initial energy.
 pub fn run() -> Result<f64, Box<dyn Error>> {

@@ -1,5 +1,7 @@
 //! One binary for all integration tests: shared helpers compile once.
 
+mod allocation;
+mod boundaries;
 mod command;
 mod conservation;
 mod convergence;

@@ -1,16 +1,16 @@
 //! B-splines on open uniform knots.
 
-use nalgebra::SVector;
-
-use super::BasisFamily;
-use super::tensor::{self, AxisFamily, Row};
-use crate::grid::{Cell, Grid};
+use super::tensor::{AxisFamily, Row};
 use crate::scalar::Scalar;
 
-/// B-splines of degree `P` on an open uniform knot vector (Cox-de Boor; Steffen, Kirby & Berzins 2008,
-/// journal section 4): `cells + P` DOFs along an axis, the first and last of which interpolate.
+/// B-splines of degree $P$ on an open uniform knot vector $\xi$ (Cox-de Boor; Steffen, Kirby & Berzins 2008, journal section
+/// 4): `cells + P` DOFs along an axis, the first and last of which interpolate.
+///
+/// $$\phi_{i,l}(x) = \frac{x-\xi_i}{\xi_{i+l}-\xi_i}\phi_{i,l-1}(x) +
+/// \frac{\xi_{i+l+1}-x}{\xi_{i+l+1}-\xi_{i+1}}\phi_{i+1,l-1}(x),\qquad \phi_{i,0} = 1 \text{ in span } i.$$
 ///
 /// Degrees 1, 2 and 3 are implemented; degree 1 equals [`super::Linear`].
+#[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BSpline<const P: usize>;
 
@@ -90,26 +90,7 @@ macro_rules! degree {
             }
         }
 
-        impl<T: Scalar, const D: usize> BasisFamily<T, D> for BSpline<$degree> {
-            fn degree(&self) -> usize {
-                $degree
-            }
-
-            fn dofs(&self, grid: &Grid<T, D>) -> [usize; D] {
-                tensor::dofs::<T, D, $width, _>(self, grid)
-            }
-
-            #[inline(always)]
-            fn for_each(
-                &self,
-                grid: &Grid<T, D>,
-                cell: &Cell<D>,
-                x: &SVector<T, D>,
-                f: impl FnMut(usize, T, SVector<T, D>),
-            ) {
-                tensor::for_each::<T, D, $width, _>(self, grid, cell, x, f);
-            }
-        }
+        crate::tensor_product_family!(BSpline<$degree>, width = $width, degree = $degree);
     };
 }
 

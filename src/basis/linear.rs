@@ -1,10 +1,6 @@
 //! Piecewise linear hat functions.
 
-use nalgebra::SVector;
-
-use super::BasisFamily;
-use super::tensor::{self, AxisFamily, Row};
-use crate::grid::{Cell, Grid};
+use super::tensor::{AxisFamily, Row};
 use crate::scalar::Scalar;
 
 /// Piecewise linear (P1) hat functions, one DOF per node: the basis of the original material point method
@@ -27,23 +23,4 @@ impl<T: Scalar> AxisFamily<T, 2> for Linear {
     }
 }
 
-impl<T: Scalar, const D: usize> BasisFamily<T, D> for Linear {
-    fn degree(&self) -> usize {
-        1
-    }
-
-    fn dofs(&self, grid: &Grid<T, D>) -> [usize; D] {
-        tensor::dofs::<T, D, 2, _>(self, grid)
-    }
-
-    #[inline(always)]
-    fn for_each(
-        &self,
-        grid: &Grid<T, D>,
-        cell: &Cell<D>,
-        x: &SVector<T, D>,
-        f: impl FnMut(usize, T, SVector<T, D>),
-    ) {
-        tensor::for_each::<T, D, 2, _>(self, grid, cell, x, f);
-    }
-}
+crate::tensor_product_family!(Linear, width = 2, degree = 1);

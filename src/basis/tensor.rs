@@ -104,3 +104,46 @@ fn advance<const D: usize>(k: &mut [usize; D], width: usize) -> bool {
     }
     false
 }
+
+/// Makes a one-axis family a [`BasisFamily`](crate::basis::BasisFamily) in every dimension, by its tensor product.
+///
+/// `width` is the `W` of its [`AxisFamily`], `degree` that of its values; `at_fixed_points` names the family whose
+/// functions points that stand still see, if it is another one.
+#[macro_export]
+macro_rules! tensor_product_family {
+    ($family:ty, width = $width:literal, degree = $degree:literal $(, at_fixed_points = $plain:expr)?) => {
+        impl<T: $crate::scalar::Scalar, const D: usize> $crate::basis::BasisFamily<T, D> for $family {
+            fn degree(&self) -> usize {
+                $degree
+            }
+
+            fn dofs(&self, grid: &$crate::grid::Grid<T, D>) -> [usize; D] {
+                $crate::basis::tensor::dofs::<T, D, $width, _>(self, grid)
+            }
+
+            #[inline(always)]
+            fn for_each(
+                &self,
+                grid: &$crate::grid::Grid<T, D>,
+                cell: &$crate::grid::Cell<D>,
+                x: &::nalgebra::SVector<T, D>,
+                f: impl FnMut(usize, T, ::nalgebra::SVector<T, D>),
+            ) {
+                $crate::basis::tensor::for_each::<T, D, $width, _>(self, grid, cell, x, f);
+            }
+
+            $(
+                #[inline(always)]
+                fn for_each_at_fixed_point(
+                    &self,
+                    grid: &$crate::grid::Grid<T, D>,
+                    cell: &$crate::grid::Cell<D>,
+                    x: &::nalgebra::SVector<T, D>,
+                    f: impl FnMut(usize, T, ::nalgebra::SVector<T, D>),
+                ) {
+                    $crate::basis::BasisFamily::for_each(&$plain, grid, cell, x, f);
+                }
+            )?
+        }
+    };
+}

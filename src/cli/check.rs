@@ -1,6 +1,7 @@
 //! `materialpoint check`.
 
-use materialpoint::scene::{MethodSummary, StepSize, critical_step, simulation};
+use materialpoint::run::{MethodSummary, critical_step, simulation};
+use materialpoint::scene::StepSize;
 use serde_json::json;
 
 use super::Shared;
@@ -73,9 +74,7 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
                 asked / limit
             ));
         }
-        None => lines.push(format!(
-            "  stable step   any: nothing resists a motion of these particles"
-        )),
+        None => lines.push("  stable step   any: nothing resists a motion of these particles".to_owned()),
     }
     print(&(lines.join("\n") + "\n"))
 }

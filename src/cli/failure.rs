@@ -3,7 +3,8 @@
 use std::fmt;
 
 use materialpoint::output::OutputError;
-use materialpoint::scene::{RunError, SceneError};
+use materialpoint::run::RunError;
+use materialpoint::scene::SceneError;
 use materialpoint::study::StudyError;
 
 /// Ends the command.

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use materialpoint::output::Folder;
-use materialpoint::scene::{Outcome, Scene, SceneError, Summary, run};
+use materialpoint::run::{Outcome, Summary, run};
+use materialpoint::scene::{Scene, SceneError};
 use materialpoint::study::write_fields;
 
 use super::Shared;

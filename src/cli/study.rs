@@ -163,7 +163,7 @@ fn cells_of(row: &Row) -> [String; 11] {
         .get("stress")
         .map_or_else(String::new, |order| format!("{order:.1}"));
     let solid = row.conservation.get("solid");
-    let kept = |pick: fn(&materialpoint::scene::ConservationSummary) -> f64| {
+    let kept = |pick: fn(&materialpoint::run::ConservationSummary) -> f64| {
         solid.map_or_else(|| "-".into(), |errors| format!("{:.0e}", pick(errors)))
     };
     [

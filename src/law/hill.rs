@@ -7,10 +7,14 @@ use super::{ConstitutiveLaw, Moduli};
 use crate::scalar::Scalar;
 use crate::tensor::symmetric;
 
-/// Hypoelastic law with Hill's rate: `d sigma/dt = C : d + W sigma - sigma W - tr(d) sigma`, in 1-D
-/// `sigma += (E - sigma) d_eps` (journal, equation 3), whose exact integral is `sigma = E (1 - 1/J)`.
+/// Hypoelastic law with Hill's rate,
 ///
-/// Stress reaches `E` only for infinite stretch; a stress of `E` or more has no meaning in 1-D.
+/// $$\dot\sigma = \mathbb{C}:d + W\sigma - \sigma W - \operatorname{tr}(d)\sigma,\qquad\text{in 1-D}\quad
+/// \dot\sigma = (E-\sigma)\dot\varepsilon$$
+///
+/// (journal, equation 3), whose exact integral is $\sigma = E(1 - 1/J)$. Stress reaches $E$ only for infinite stretch; a
+/// stress of $E$ or more has no meaning in 1-D.
+#[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hill<T> {
     /// Elastic constants.

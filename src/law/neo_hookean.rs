@@ -16,9 +16,13 @@ impl<T: Scalar, const D: usize> Default for DeformationGradient<T, D> {
     }
 }
 
-/// Compressible neo-Hookean solid: `sigma = (lambda ln J / J) 1 + (mu/J) (F F^T - 1)`, the Cauchy stress of the
-/// energy `mu/2 (tr F F^T - D) - mu ln J + lambda/2 (ln J)^2` per reference volume. Below 3-D the stretches
-/// off the plane are 1 (plane, uniaxial strain).
+/// Compressible neo-Hookean solid, with the Cauchy stress and the energy per reference volume
+///
+/// $$\sigma = \frac{\lambda\ln J}{J}1 + \frac{\mu}{J}(FF^T - 1),\qquad
+/// W = \frac{\mu}{2}(\operatorname{tr}FF^T - D) - \mu\ln J + \frac{\lambda}{2}(\ln J)^2.$$
+///
+/// Below 3-D the stretches off the plane are 1 (plane, uniaxial strain).
+#[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookean<T> {
     /// Elastic constants.

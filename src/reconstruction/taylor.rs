@@ -9,12 +9,15 @@ use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
 use crate::taylor::{CellFit, DEFAULT_TOLERANCE_FACTOR, taylor_functions};
 
-/// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell a polynomial of `NB` Taylor functions
-/// through the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3 dimensions.
+/// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor functions through
+/// the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3 dimensions.
 ///
-/// Fields (stress) are fitted freely; densities (mass, momentum) keep the cell's integral, because their
-/// first coefficient is the cell's amount over its volume (journal, equation 14). A cell never uses more
-/// functions than it has particles, nor one that its layout cannot tell from the others.
+/// $$\hat q_e = \sum_k a_k\psi_k,\qquad \int_e\hat q_e = a_1|e|.$$
+///
+/// Fields (stress) are fitted freely; densities (mass, momentum) keep the cell's integral, because their $a_1$ is the cell's
+/// amount over its volume (journal, equation 14). A cell never uses more functions than it has particles, nor one that
+/// its layout cannot tell from the others. The functions are those of [`mod@crate::taylor`].
+#[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct Taylor<T, const D: usize, const NB: usize> {
     rule: Vec<Node<T, D, NB>>,

@@ -13,33 +13,21 @@
 //! ```
 
 mod builtin;
-mod dispatch;
 mod error;
 mod expression;
-mod initial;
-mod loads;
-mod norms;
 mod overrides;
-mod particle_table;
 mod read;
-mod reference;
-mod run;
-mod schedule;
 mod spec;
-mod summary;
 mod syntax;
 mod text;
 
 pub use crate::method::{Basis, ReconstructionKind};
 pub use error::SceneError;
 pub use expression::{Expression, ExpressionError, ExpressionProblem};
-pub use norms::{ErrorNorms, Exact};
-pub use run::{Outcome, Progress, RunError, critical_step, run, simulation};
 pub use spec::{
     Against, Body, Boundary, BoundaryKind, GridSpec, Law, Material, Method, OutputSpec, ParticleOutput,
     ReferenceSpec, ScalarKind, StepSize, TimeSpec,
 };
-pub use summary::{ConservationSummary, EnergySummary, MethodSummary, Summary};
 
 use std::path::Path;
 

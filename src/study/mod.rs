@@ -11,7 +11,8 @@ use serde::Serialize;
 
 use crate::method::Method;
 use crate::output::OutputError;
-use crate::scene::{ConservationSummary, ErrorNorms, Outcome, RunError, Scene, run};
+use crate::run::{ConservationSummary, ErrorNorms, Outcome, RunError, run};
+use crate::scene::Scene;
 
 /// What to run.
 #[derive(Clone, Debug)]

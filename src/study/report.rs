@@ -8,7 +8,7 @@ use crate::output::{
     Curve, CurvePoint, FieldPanel, Folder, OutputError, Records, draw_fields, draw_grid_of_fields,
     draw_study, number,
 };
-use crate::scene::{ErrorNorms, Outcome};
+use crate::run::{ErrorNorms, Outcome};
 
 const FIELDS: [&str; 3] = ["displacement", "velocity", "stress"];
 

@@ -4,10 +4,12 @@ mod column;
 mod critical_step;
 mod full_period;
 mod large_bar;
+mod precision;
 mod small_bar;
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::scene::{Scene, Summary, run};
+use materialpoint::run::{Summary, run};
+use materialpoint::scene::Scene;
 
 pub const LINEAR: Basis = Basis::Linear;
 pub const DUAL_DOMAIN: Basis = Basis::DualDomain;

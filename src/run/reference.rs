@@ -1,10 +1,10 @@
 //! The reference that a scene names.
 
-use super::run::RunError;
-use super::{Against, Law, ReferenceSpec, Scene};
+use super::error::RunError;
 use crate::reference::{
     Hill, LagrangianBar, Linear, NeoHookean, Reference, ReferenceError, StaticColumn, Strain, VibratingBar,
 };
+use crate::scene::{Against, Law, ReferenceSpec, Scene};
 
 /// Builds it, with whatever the scene says already.
 pub(super) fn solution(scene: &Scene) -> Result<Option<Box<dyn Reference>>, RunError> {

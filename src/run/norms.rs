@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::Scene;
+use super::error::RunError;
 use super::reference::solution;
-use super::run::RunError;
 use super::schedule::Schedule;
 use crate::particles::Particles;
+use crate::scene::Scene;
 
 /// Reference values at the particles, in their order; empty where the scene names no reference.
 #[derive(Clone, Debug, Default)]

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::march::March;
 use super::norms::ErrorNorms;
-use super::run::March;
 use super::schedule::Schedule;
-use super::{Law, ScalarKind, Scene};
+use crate::scene::{Law, ScalarKind, Scene};
 use crate::stepper::{Conservation, Simulation};
 
 /// The method and the model of a run, by name.

@@ -2,8 +2,8 @@
 
 use nalgebra::SVector;
 
-use super::run::RunError;
-use super::{BoundaryKind, Expression, Scene};
+use super::error::RunError;
+use crate::scene::{BoundaryKind, Expression, Scene};
 use crate::stepper::{FaceCondition, Forcing};
 
 /// Evaluates the scene's expressions for the step from `time` to `time + dt`: loads at its start, told

@@ -2,9 +2,8 @@
 
 use nalgebra::SVector;
 
+use super::error::RunError;
 use super::initial::{Initial, initial};
-use super::run::RunError;
-use super::{Law, ScalarKind, Scene};
 use crate::basis::BasisFamily;
 use crate::error::GridError;
 use crate::grid::Grid;
@@ -13,6 +12,7 @@ use crate::method::MethodVisitor;
 use crate::phase::OnePhase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::scene::{Law, ScalarKind, Scene};
 use crate::stepper::{Setup, Simulation, Stepper};
 
 /// Builds the stepper a scene asks for.

@@ -1,8 +1,8 @@
 //! When the steps of a run begin and end.
 
+use super::error::RunError;
 use super::loads::forcing;
-use super::run::RunError;
-use super::{Scene, StepSize};
+use crate::scene::{Scene, StepSize};
 use crate::stepper::Simulation;
 
 /// Steps of one size; the last one is shorter where the end asks for it.

@@ -2,10 +2,10 @@
 
 use nalgebra::SVector;
 
-use super::run::RunError;
-use super::{Body, BoundaryKind, Scene};
+use super::error::RunError;
 use crate::grid::{Face, Grid, Side};
 use crate::particles::{Particles, lattice};
+use crate::scene::{Body, BoundaryKind, Scene};
 use crate::stepper::SurfacePoint;
 
 /// Particles and loaded surfaces.

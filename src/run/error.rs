@@ -1,0 +1,59 @@
+//! Why a run could not start or go on.
+
+use thiserror::Error;
+
+use crate::error::{GridError, SetupError, StepError};
+use crate::method::Method;
+use crate::output::OutputError;
+use crate::reference::ReferenceError;
+use crate::scene::ExpressionError;
+
+/// Why a run could not start or go on.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The grid cannot be built.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// The particles or the material cannot be set up.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// An expression has no finite value where it is needed.
+    #[error(transparent)]
+    Expression(#[from] ExpressionError),
+    /// The reference cannot be evaluated.
+    #[error("reference: {0}")]
+    Reference(#[from] ReferenceError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// No such combination of basis and reconstruction.
+    #[error("method {0} does not exist")]
+    NoSuchMethod(Method),
+    /// `step = "auto"` on particles that nothing resists.
+    #[error(
+        "time.step = \"auto\": nothing resists a motion of these particles, so no step is critical; give a number"
+    )]
+    NoCriticalStep,
+    /// The run stopped on the way.
+    #[error("{source}; {}", advice(*dt, *critical))]
+    Stopped {
+        /// What happened, at which step, to which particle.
+        source: StepError,
+        /// Time step of the run (s).
+        dt: f64,
+        /// Largest stable step of the initial layout (s), if it could be found.
+        critical: Option<f64>,
+    },
+}
+
+fn advice(dt: f64, critical: Option<f64>) -> String {
+    match critical {
+        Some(limit) if dt > limit => format!(
+            "the run is unstable: time.step = {dt:.3e} s is above the largest stable step, {limit:.3e} s, so take a smaller one or \"auto\""
+        ),
+        Some(limit) => format!(
+            "time.step = {dt:.3e} s is within the largest stable step of the initial layout, {limit:.3e} s, so look at the loads, the grid's extent and the method"
+        ),
+        None => format!("time.step = {dt:.3e} s; look at the loads and the grid's extent"),
+    }
+}

@@ -1,0 +1,73 @@
+//! After the first step nothing is allocated, also while particles cross cells.
+
+use materialpoint::basis::BasisFamily;
+use materialpoint::grid::{Face, Grid, Side};
+use materialpoint::law::{Hill, Moduli};
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::{Method, MethodVisitor};
+use materialpoint::particles::{Particles, lattice};
+use materialpoint::phase::OnePhase;
+use materialpoint::reconstruction::Reconstruction;
+use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use nalgebra::vector;
+
+/// The large bar.
+struct LargeBar(VelocityMass);
+
+impl MethodVisitor<f64> for LargeBar {
+    type Output = Box<dyn Simulation<1>>;
+
+    fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
+    where
+        B: BasisFamily<f64, 1> + Send + 'static,
+        R: Reconstruction<f64, 1> + Clone + Send + 'static,
+    {
+        let grid = Grid::new(vector![0.0], vector![1.0], [20]).unwrap();
+        let points = lattice(&grid, grid.min(), grid.max(), [8]);
+        let mut particles = Particles::at_rest(&points, 2e3);
+        for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
+            v[0] = 0.8 * (std::f64::consts::PI * x[0]).sin();
+        }
+        let setup = Setup {
+            grid,
+            basis,
+            reconstruction,
+            law: Hill {
+                moduli: Moduli::uniaxial(4e4).unwrap(),
+            },
+            phase: OnePhase,
+            velocity_mass: self.0,
+            particles,
+            surface: Vec::new(),
+        };
+        Box::new(Stepper::new(setup).unwrap())
+    }
+}
+
+#[test]
+fn no_step_after_the_first_allocates() {
+    let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
+    let forcing = ends
+        .into_iter()
+        .fold(Forcing::none(), |f, end| f.with_face(end, FaceCondition::fixed()));
+    for method in Method::NINE {
+        for mass in [
+            VelocityMass::Consistent,
+            VelocityMass::Constrained,
+            VelocityMass::Lumped,
+        ] {
+            let mut simulation = method.dispatch(LargeBar(mass)).unwrap();
+            let first = allocation_counter::measure(|| simulation.step(1e-4, &forcing).unwrap());
+            let later = allocation_counter::measure(|| {
+                for _ in 0..1000 {
+                    simulation.step(1e-4, &forcing).unwrap();
+                }
+            });
+            assert!(simulation.diagnostics().grid_crossings > 100, "{method}");
+            assert_eq!(later.count_total, 0, "{method} {mass:?}");
+            // The counter does count: a fit or a spline allocates its arrays in the first step.
+            let fits = method.to_string().contains("taylor") || method.to_string().contains("+spline");
+            assert_eq!(first.count_total > 0, fits, "{method}");
+        }
+    }
+}
