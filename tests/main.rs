@@ -6,4 +6,5 @@ mod command;
 mod conservation;
 mod convergence;
 mod examples;
+mod identities;
 mod scenes;

@@ -7,7 +7,7 @@ use crate::field::Field;
 use crate::grid::Cell;
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
-use crate::taylor::{CellFit, DEFAULT_TOLERANCE_FACTOR, taylor_functions};
+use crate::taylor::{CellFit, DEFAULT_TOLERANCE, taylor_functions};
 
 /// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor functions through
 /// the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3 dimensions.
@@ -78,15 +78,14 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
             .collect();
         Self {
             rule,
-            tolerance: T::lit(DEFAULT_TOLERANCE_FACTOR) * T::default_epsilon().sqrt(),
+            tolerance: T::lit(DEFAULT_TOLERANCE),
             cells: Vec::new(),
             reduced: 0,
         }
     }
 
-    /// Drops a function of which, on a cell's particles, less than the share `tolerance` is independent of the
-    /// functions before it. The default, four times the root of the machine epsilon, drops only what round-off
-    /// would decide; larger values smooth.
+    /// Drops a function where, on a cell's particles, less than the share `tolerance` of it is left after the functions
+    /// before it ([`DEFAULT_TOLERANCE`]).
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: T) -> Self {
         self.tolerance = tolerance;

@@ -40,3 +40,16 @@ pub fn taylor_functions<T: Scalar, const D: usize, const NB: usize>(s: &SVector<
     }
     psi
 }
+
+/// Root mean square of each Taylor function over the cell, in the same order: 1; 1/sqrt 3; 1/sqrt 45; 1/3.
+pub(super) fn taylor_sizes<T: Scalar, const D: usize, const NB: usize>() -> SVector<T, NB> {
+    SVector::from_fn(|k, _| {
+        let square = match k {
+            0 => 1.0,
+            _ if k <= D => 3.0,
+            _ if k <= 2 * D => 45.0,
+            _ => 9.0,
+        };
+        T::one() / T::lit(square).sqrt()
+    })
+}

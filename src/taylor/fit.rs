@@ -5,18 +5,21 @@
 //! geometry serves stress, density and momentum. Where the points are well spread, `C` comes from the Gram
 //! matrix (a few sums per particle). Where they are not, squaring the condition number would cost the
 //! digits that are left (and a Cholesky factorisation of a singular matrix may well succeed with garbage),
-//! so there `C` comes from Givens rotations, one particle at a time. A function that depends on the ones
-//! before it on these points is dropped.
+//! so there `C` comes from Givens rotations, one particle at a time. A function is dropped where the points hardly see it:
+//! where what is left of it after the functions before it, in root mean square over the points, is less than a share of
+//! its root mean square over the cell.
 
 use nalgebra::{SMatrix, SVector};
 
+use super::basis::taylor_sizes;
 use super::taylor_functions;
 use crate::field::Field;
 use crate::scalar::Scalar;
 
-/// A function counts as dependent where less than this factor times the root of the machine epsilon of it
-/// is left after the ones before it are projected out (default of [`CellFit::new`]'s `tolerance`).
-pub const DEFAULT_TOLERANCE_FACTOR: f64 = 4.0;
+/// Default of [`CellFit::new`]'s `tolerance`: 2 %. Much smaller ones let particles that lie close together, or all near a
+/// zero of a function, decide a slope of the whole cell, so that the noise of their values swamps the fit; 10 % and more
+/// smooth what the particles do resolve.
+pub const DEFAULT_TOLERANCE: f64 = 0.02;
 
 /// Share of a function's square sum that must be independent for the Gram matrix to be trusted.
 const GRAM_SHARE: f64 = 1e-2;
@@ -32,23 +35,30 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
     /// Prepares the fit on the points with local coordinates `points`, a sequence that can be run through
     /// repeatedly.
     ///
-    /// `first` is 0 for the free fit and 1 where the mean is given. At most as many functions as points are
-    /// used, and none that depends on the earlier ones up to the relative `tolerance`.
+    /// `first` is 0 for the free fit and 1 where the mean is given. At most as many functions as points are used, and
+    /// none of which less than the share `tolerance` is left on the points ([`DEFAULT_TOLERANCE`]).
     pub fn new<const D: usize>(
         points: impl Iterator<Item = SVector<T, D>> + Clone,
         first: usize,
         tolerance: T,
     ) -> Self {
         let rows = points.map(|s| taylor_functions::<T, D, NB>(&s));
-        let end = rows.clone().take(NB).count();
+        let count = rows.clone().count();
+        let end = count.min(NB);
         let mut wanted = [false; NB];
         wanted[first.min(end)..end].fill(true);
-        Self::from_gram(rows.clone(), &wanted)
-            .unwrap_or_else(|| Self::from_rotations(rows, wanted, tolerance))
+        let least = taylor_sizes::<T, D, NB>() * (tolerance * T::count(count).sqrt());
+        Self::from_gram(rows.clone(), &wanted, &least)
+            .unwrap_or_else(|| Self::from_rotations(rows, wanted, &least))
     }
 
-    /// Cholesky factorisation of the Gram matrix; `None` where it loses too many digits.
-    fn from_gram(rows: impl Iterator<Item = SVector<T, NB>>, wanted: &[bool; NB]) -> Option<Self> {
+    /// Cholesky factorisation of the Gram matrix; `None` where it loses too many digits or leaves too little of a
+    /// function.
+    fn from_gram(
+        rows: impl Iterator<Item = SVector<T, NB>>,
+        wanted: &[bool; NB],
+        least: &SVector<T, NB>,
+    ) -> Option<Self> {
         let mut gram = SMatrix::<T, NB, NB>::zeros();
         for psi in rows {
             for i in 0..NB {
@@ -65,7 +75,7 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
                 r[(j, k)] = dot / r[(j, j)];
                 left -= r[(j, k)] * r[(j, k)];
             }
-            if left <= gram[(k, k)] * T::lit(GRAM_SHARE) {
+            if left <= gram[(k, k)] * T::lit(GRAM_SHARE) || left <= least[k] * least[k] {
                 return None;
             }
             r[(k, k)] = left.sqrt();
@@ -73,19 +83,15 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         Some(Self::from_factor(&r, wanted))
     }
 
-    /// QR factorisation by Givens rotations, again without each function found dependent.
+    /// QR factorisation by Givens rotations, again without each function of which too little is left.
     fn from_rotations(
         rows: impl Iterator<Item = SVector<T, NB>> + Clone,
         mut wanted: [bool; NB],
-        tolerance: T,
+        least: &SVector<T, NB>,
     ) -> Self {
         loop {
             let r = rotate(rows.clone(), &wanted);
-            let dependent = (0..NB).filter(|&k| wanted[k]).find(|&k| {
-                let norm = (0..=k).fold(T::zero(), |n, i| n + r[(i, k)] * r[(i, k)]).sqrt();
-                r[(k, k)].abs() <= tolerance * norm
-            });
-            match dependent {
+            match (0..NB).find(|&k| wanted[k] && r[(k, k)].abs() <= least[k]) {
                 Some(k) => wanted[k] = false,
                 None => return Self::from_factor(&r, &wanted),
             }

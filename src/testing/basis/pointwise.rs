@@ -1,0 +1,141 @@
+//! What every basis family promises at every point.
+
+use nalgebra::SVector;
+
+use super::cell_of;
+use super::sample::{Sample, Visitor, slope_bound, value_error};
+use crate::basis::BasisFamily;
+use crate::grid::{Face, Grid, Side};
+use crate::scalar::Scalar;
+use crate::testing::failure::{Failure, Place, Property, at_least, near};
+
+pub(super) fn check<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    basis: &B,
+    grid: &Grid<T, D>,
+    x: &SVector<T, D>,
+) -> Result<(), Failure> {
+    let cell = cell_of(grid, x)?;
+    let moving = Sample::new(basis, grid, &cell, x, Visitor::Moving)?;
+    let fixed = Sample::new(basis, grid, &cell, x, Visitor::Fixed)?;
+    let error = value_error(basis, grid);
+    unity(&moving, x, error)?;
+    non_negative(&moving, x, error)?;
+    for sample in [&moving, &fixed] {
+        gradient_sum::<T, D, B>(basis, grid, sample, x, error)?;
+    }
+    half_band(&moving, x, basis.half_band(grid))?;
+    same_values(&moving, &fixed, x, error)?;
+    Face::all::<D>().try_for_each(|face| on_face(basis, grid, face, x, error))
+}
+
+fn unity<T: Scalar, const D: usize>(s: &Sample<T, D>, x: &SVector<T, D>, error: T) -> Result<(), Failure> {
+    let sum = s.value.iter().fold(T::zero(), |sum, &v| sum + v);
+    let allowed = error * T::count(s.calls);
+    near(
+        Property::PartitionOfUnity,
+        || Place::point(x),
+        T::one(),
+        sum,
+        allowed,
+    )
+}
+
+fn non_negative<T: Scalar, const D: usize>(
+    s: &Sample<T, D>,
+    x: &SVector<T, D>,
+    error: T,
+) -> Result<(), Failure> {
+    s.value
+        .iter()
+        .enumerate()
+        .try_for_each(|(dof, &v)| at_least(Property::NonNegative, || Place::dof(dof, x), -error, v))
+}
+
+/// The gradients carry the error of the values times the slope that goes with it.
+fn gradient_sum<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    basis: &B,
+    grid: &Grid<T, D>,
+    s: &Sample<T, D>,
+    x: &SVector<T, D>,
+    error: T,
+) -> Result<(), Failure> {
+    let sum = s.gradient.iter().fold(SVector::zeros(), |sum, g| sum + g);
+    let relative = error * T::count(s.calls) * slope_bound::<T, D, B>(basis);
+    (0..D).try_for_each(|axis| {
+        let allowed = relative * grid.inverse_cell_size()[axis];
+        near(
+            Property::GradientSum,
+            || Place::point(x),
+            T::zero(),
+            sum[axis],
+            allowed,
+        )
+    })
+}
+
+fn same_values<T: Scalar, const D: usize>(
+    a: &Sample<T, D>,
+    b: &Sample<T, D>,
+    x: &SVector<T, D>,
+    error: T,
+) -> Result<(), Failure> {
+    (0..a.value.len()).try_for_each(|dof| {
+        let place = || Place::dof(dof, x);
+        near(
+            Property::FixedPointValues,
+            place,
+            a.value[dof],
+            b.value[dof],
+            error,
+        )
+    })
+}
+
+fn half_band<T: Scalar, const D: usize>(
+    s: &Sample<T, D>,
+    x: &SVector<T, D>,
+    band: usize,
+) -> Result<(), Failure> {
+    let with_value = |v: &T| *v != T::zero();
+    let first = s.value.iter().position(with_value).unwrap_or(0);
+    let last = s.value.iter().rposition(with_value).unwrap_or(0);
+    // A smaller reach than the band is welcome.
+    let place = || Place::dof(last, x);
+    at_least(Property::HalfBand, place, T::count(last - first), T::count(band))
+}
+
+/// Moves `x` onto the face and looks for values of other DOFs.
+fn on_face<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    basis: &B,
+    grid: &Grid<T, D>,
+    face: Face,
+    x: &SVector<T, D>,
+    error: T,
+) -> Result<(), Failure> {
+    let mut x = *x;
+    x[face.axis] = match face.side {
+        Side::Min => grid.min()[face.axis],
+        Side::Max => grid.max()[face.axis],
+    };
+    let cell = cell_of(grid, &x)?;
+    let mut sample = Sample::new(basis, grid, &cell, &x, Visitor::Moving)?;
+    let mut outside = None;
+    basis.for_each_on_face(grid, face, |dof| match sample.value.get_mut(dof) {
+        Some(value) => *value = T::zero(),
+        None => outside = Some(dof),
+    });
+    if let Some(dof) = outside {
+        let count = T::count(sample.value.len());
+        at_least(
+            Property::DofInRange,
+            || Place::dof(dof, &x),
+            T::count(dof + 1),
+            count,
+        )?;
+    }
+    sample
+        .value
+        .iter()
+        .enumerate()
+        .try_for_each(|(dof, &v)| near(Property::FaceValues, || Place::dof(dof, &x), T::zero(), v, error))
+}

@@ -1,0 +1,243 @@
+//! What a check reports.
+
+use std::fmt;
+
+use nalgebra::SVector;
+use thiserror::Error;
+
+use crate::grid::Cell;
+use crate::scalar::Scalar;
+
+/// A property that an implementation does not have, or has although it claims not to.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{property}, {place}: expected {expected}, found {found:e}")]
+pub struct Failure {
+    /// The property at fault.
+    pub property: Property,
+    /// Where it was noticed.
+    pub place: Place,
+    /// What was expected there.
+    pub expected: Expected,
+    /// What was found there.
+    pub found: f64,
+}
+
+/// The properties that the checks know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Property {
+    /// The sample points or particles given to the check lie in the grid.
+    PointsInGrid,
+    /// The number of a DOF is below the number of DOFs.
+    DofInRange,
+    /// Values sum to one.
+    PartitionOfUnity,
+    /// No value is negative.
+    NonNegative,
+    /// Gradients sum to zero.
+    GradientSum,
+    /// On a face of the grid only the face's own DOFs have a value.
+    FaceValues,
+    /// DOFs whose values overlap differ by no more than the half band width.
+    HalfBand,
+    /// Some point gives the DOF a value.
+    EveryDofReached,
+    /// A point that stands still sees the same values as a moving one.
+    FixedPointValues,
+    /// Gradients are the derivatives of the values.
+    GradientsAreDerivatives,
+    /// Gradients at points that stand still are the derivatives of the values.
+    FixedPointGradients,
+    /// The values reproduce polynomials of this degree.
+    Reproduces(usize),
+    /// The gradient of a linear field is exact.
+    GradientOfLinearField,
+    /// Points of the stream lie in the cell that they name.
+    StreamInCell,
+    /// Every field is streamed at the same points.
+    SamePoints,
+    /// The points are the particles, as the associated constant says.
+    StreamsParticles,
+    /// Streaming is linear in the field.
+    Linear,
+    /// `prepare` forgets the particles it saw before.
+    PrepareForgets,
+    /// Weights sum to the volume that they integrate.
+    Weights,
+    /// The amounts of each cell are kept.
+    ConservesAmounts,
+    /// Integrals over cells are exact for polynomials of this degree.
+    Integrates(usize),
+    /// The undeformed state has neither stress nor energy.
+    Unstressed,
+    /// An increment of zero changes nothing.
+    ZeroIncrement,
+    /// Stress increments are linear in small strain increments.
+    LinearForSmallIncrements,
+    /// `density * wave_speed^2` is the stiffness of uniaxial strain.
+    WaveSpeed,
+    /// The change of the strain energy is the work of the stress.
+    EnergyIsWork,
+    /// Rotating the material produces no energy.
+    RotationKeepsEnergy,
+    /// Stress follows a rotation of the material.
+    Objective,
+}
+
+impl fmt::Display for Property {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words = match self {
+            Self::PointsInGrid => "points lie in the grid",
+            Self::DofInRange => "DOF numbers are below the number of DOFs",
+            Self::PartitionOfUnity => "values sum to one",
+            Self::NonNegative => "values are not negative",
+            Self::GradientSum => "gradients sum to zero",
+            Self::FaceValues => "values on a face belong to the face's DOFs",
+            Self::HalfBand => "DOFs that overlap are within the half band width",
+            Self::EveryDofReached => "every DOF has a value somewhere",
+            Self::FixedPointValues => "points that stand still see the same values",
+            Self::GradientsAreDerivatives => "gradients are the derivatives of the values",
+            Self::FixedPointGradients => "gradients at fixed points are the derivatives of the values",
+            Self::Reproduces(degree) => return write!(f, "polynomials of degree {degree} are reproduced"),
+            Self::GradientOfLinearField => "the gradient of a linear field is exact",
+            Self::StreamInCell => "stream points lie in their cells",
+            Self::SamePoints => "every field is streamed at the same points",
+            Self::StreamsParticles => "the stream points are the particles where the type says so",
+            Self::Linear => "streaming is linear in the field",
+            Self::PrepareForgets => "prepare forgets earlier particles",
+            Self::Weights => "weights sum to the volume that they integrate",
+            Self::ConservesAmounts => "each cell's amounts are kept",
+            Self::Integrates(degree) => {
+                return write!(
+                    f,
+                    "integrals over cells are exact for polynomials of degree {degree}"
+                );
+            }
+            Self::Unstressed => "the undeformed state has neither stress nor energy",
+            Self::ZeroIncrement => "an increment of zero changes nothing",
+            Self::LinearForSmallIncrements => "stress is linear in small increments",
+            Self::WaveSpeed => "density * wave_speed^2 is the stiffness of uniaxial strain",
+            Self::EnergyIsWork => "the change of energy is the work of the stress",
+            Self::RotationKeepsEnergy => "a rotation produces no energy",
+            Self::Objective => "stress follows a rotation",
+        };
+        f.write_str(words)
+    }
+}
+
+/// Where a property was looked at.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// Over all points together.
+    Everywhere,
+    /// At a position (m).
+    Point(Vec<f64>),
+    /// For one DOF, at a position (m).
+    Dof {
+        /// Number of the DOF.
+        dof: usize,
+        /// Where (m).
+        position: Vec<f64>,
+    },
+    /// In a cell.
+    Cell(Vec<u32>),
+    /// In a component of the stress or along an axis of the strain: row and column.
+    Component(usize, usize),
+}
+
+impl Place {
+    pub(super) fn point<T: Scalar, const D: usize>(x: &SVector<T, D>) -> Self {
+        Self::Point(x.iter().map(|v| v.primal()).collect())
+    }
+
+    pub(super) fn dof<T: Scalar, const D: usize>(dof: usize, x: &SVector<T, D>) -> Self {
+        let position = x.iter().map(|v| v.primal()).collect();
+        Self::Dof { dof, position }
+    }
+
+    pub(super) fn cell<const D: usize>(cell: &Cell<D>) -> Self {
+        Self::Cell(cell.to_vec())
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Everywhere => f.write_str("everywhere"),
+            Self::Point(position) => write!(f, "at {position:?}"),
+            Self::Dof { dof, position } => write!(f, "DOF {dof} at {position:?}"),
+            Self::Cell(cell) => write!(f, "in cell {cell:?}"),
+            Self::Component(row, column) => write!(f, "component ({row}, {column})"),
+        }
+    }
+}
+
+/// What a check expected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Expected {
+    /// This value, up to a difference that round-off or the size of an increment explains.
+    Near {
+        /// The value.
+        value: f64,
+        /// The largest difference.
+        allowed: f64,
+    },
+    /// At least this much.
+    AtLeast(f64),
+    /// A deviation of at least this many times what round-off explains, because the claim is that the property
+    /// does *not* hold; what was found is the largest such multiple.
+    Violation {
+        /// Multiple of round-off.
+        times: f64,
+    },
+}
+
+impl fmt::Display for Expected {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Near { value, allowed } => write!(f, "{value:e} within {allowed:e}"),
+            Self::AtLeast(bound) => write!(f, "at least {bound:e}"),
+            Self::Violation { times } => write!(f, "a deviation of at least {times} times round-off"),
+        }
+    }
+}
+
+/// `found = value` within `allowed`; a NaN fails.
+pub(super) fn near<T: Scalar>(
+    property: Property,
+    place: impl FnOnce() -> Place,
+    value: T,
+    found: T,
+    allowed: T,
+) -> Result<(), Failure> {
+    if (found - value).abs() <= allowed {
+        return Ok(());
+    }
+    Err(Failure {
+        property,
+        place: place(),
+        expected: Expected::Near {
+            value: value.primal(),
+            allowed: allowed.primal(),
+        },
+        found: found.primal(),
+    })
+}
+
+/// `found >= bound`; a NaN fails.
+pub(super) fn at_least<T: Scalar>(
+    property: Property,
+    place: impl FnOnce() -> Place,
+    bound: T,
+    found: T,
+) -> Result<(), Failure> {
+    if found >= bound {
+        return Ok(());
+    }
+    Err(Failure {
+        property,
+        place: place(),
+        expected: Expected::AtLeast(bound.primal()),
+        found: found.primal(),
+    })
+}

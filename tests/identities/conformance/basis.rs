@@ -1,0 +1,244 @@
+//! Basis families.
+
+use materialpoint::basis::{AxisFamily, BSpline, BasisFamily, DualDomain, Linear, Row, tensor};
+use materialpoint::grid::{Cell, Face, Grid};
+use materialpoint::scalar::Scalar;
+use materialpoint::testing::{BasisClaims, Expected, Failure, Property, check_basis};
+use nalgebra::{SVector, vector};
+
+/// Places within a cell: edges, middle, and some others.
+const UNITS: [f64; 6] = [0.0, 0.125, 0.4, 0.5, 0.93, 1.0];
+
+fn grid<T: Scalar, const D: usize>(cells: usize) -> Grid<T, D> {
+    let min = SVector::repeat(T::lit(-0.7));
+    let cells = std::array::from_fn(|a| (cells - a.min(cells - 1)).max(1));
+    Grid::new(min, SVector::from_fn(|a, _| T::lit(1.9) + T::count(a)), cells).unwrap()
+}
+
+fn points<T: Scalar, const D: usize>(grid: &Grid<T, D>) -> Vec<SVector<T, D>> {
+    let mut points = Vec::new();
+    for number in 0..grid.cell_count() {
+        let cell = grid.cell(number);
+        for k in 0..UNITS.len() {
+            points.push(SVector::from_fn(|a, _| {
+                let (low, high) = (grid.edge(a, cell[a] as usize), grid.edge(a, cell[a] as usize + 1));
+                (low + (high - low) * T::lit(UNITS[(k + 2 * a) % UNITS.len()])).min(high)
+            }));
+        }
+    }
+    points
+}
+
+/// The smoothed gradients; on a single cell there is nothing to smooth, and they are the linear ones.
+fn dual_domain(cells: usize) -> BasisClaims {
+    BasisClaims {
+        gradients_are_derivatives: cells == 1,
+        ..BasisClaims::of_degree(1)
+    }
+}
+
+fn families<T: Scalar, const D: usize>(cells: usize) -> Result<(), Failure>
+where
+    BSpline<2>: BasisFamily<T, D>,
+    BSpline<3>: BasisFamily<T, D>,
+{
+    let grid = grid::<T, D>(cells);
+    let points = points(&grid);
+    check_basis(&Linear, &grid, &points, &BasisClaims::of_degree(1))?;
+    check_basis(&DualDomain, &grid, &points, &dual_domain(cells))?;
+    check_basis(&BSpline::<2>, &grid, &points, &BasisClaims::of_degree(2))?;
+    check_basis(&BSpline::<3>, &grid, &points, &BasisClaims::of_degree(3))
+}
+
+#[test]
+fn our_families_keep_their_claims() -> Result<(), Failure> {
+    (1..7).try_for_each(families::<f64, 1>)?;
+    (1..5).try_for_each(families::<f64, 2>)?;
+    (2..4).try_for_each(families::<f64, 3>)
+}
+
+/// On more cells the fourth power is so nearly a cubic spline that round-off hides the difference.
+#[test]
+fn our_families_keep_their_claims_in_single_precision() -> Result<(), Failure> {
+    (1..4).try_for_each(families::<f32, 1>)?;
+    (1..3).try_for_each(families::<f32, 2>)
+}
+
+/// The property that `check_basis` finds violated on a line of `cells` cells.
+fn verdict(basis: &impl BasisFamily<f64, 1>, claims: &BasisClaims) -> Option<Property> {
+    let grid = grid::<f64, 1>(5);
+    check_basis(basis, &grid, &points(&grid), claims)
+        .err()
+        .map(|failure| failure.property)
+}
+
+#[test]
+fn claims_that_are_too_bold_or_too_shy_are_found() {
+    let honest = BasisClaims::of_degree(2);
+    let verdict = |claims| verdict(&BSpline::<2>, &claims);
+    assert_eq!(verdict(honest), None);
+    let with = |reproduces| BasisClaims { reproduces, ..honest };
+    assert_eq!(verdict(with(1)), Some(Property::Reproduces(2)));
+    assert_eq!(verdict(with(3)), Some(Property::Reproduces(3)));
+    let shy = BasisClaims {
+        gradients_are_derivatives: false,
+        ..honest
+    };
+    assert_eq!(verdict(shy), Some(Property::GradientsAreDerivatives));
+    let shy = BasisClaims {
+        gradient_reproduces_linear: false,
+        ..honest
+    };
+    assert_eq!(verdict(shy), Some(Property::GradientOfLinearField));
+    let shy = BasisClaims {
+        fixed_point_gradients_are_derivatives: false,
+        ..honest
+    };
+    assert_eq!(verdict(shy), Some(Property::FixedPointGradients));
+    // Dual domain's gradients are no derivatives.
+    let bold = self::verdict(&DualDomain, &BasisClaims::of_degree(1));
+    assert_eq!(bold, Some(Property::GradientsAreDerivatives));
+}
+
+/// One mistake in a family that is otherwise dual domain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mistake {
+    /// Central difference at the ends too, as if the next node lay outside.
+    CentralAtEnds,
+    /// The slopes of a whole end are left out on one side only.
+    OneSidedSum,
+    /// Values scaled.
+    NoUnity,
+    /// A value that dips below zero, its neighbour above one.
+    Negative,
+    /// A DOF beyond the last.
+    Range,
+    /// A DOF that no point reaches.
+    Unreached,
+    /// Mass reaches farther than the degree says.
+    Band,
+    /// Half a cell's shift: a face sees its neighbours.
+    Face,
+    /// Other values at points that stand still.
+    FixedValues,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Faulty(Mistake);
+
+impl AxisFamily<f64, 4> for Faulty {
+    fn dofs_on_axis(&self, cells: usize) -> usize {
+        cells + 1 + usize::from(self.0 == Mistake::Unreached)
+    }
+
+    fn row(&self, cells: usize, cell: usize, unit: f64) -> Row<f64, 4> {
+        let mut row = DualDomain.row(cells, cell, unit);
+        let smooth = (1.0 - 2.0 * unit * (1.0 - unit)) * (1.0 - unit);
+        match self.0 {
+            Mistake::CentralAtEnds if cell == 0 => {
+                row.slope[1] += smooth / 2.0;
+                row.slope[2] -= smooth / 2.0;
+            }
+            Mistake::OneSidedSum if cell == 0 => row.slope[1] += smooth / 2.0,
+            Mistake::NoUnity => row.value[1] *= 1.0 + 1e-9,
+            Mistake::Negative if cell == 1 => {
+                row.value[0] -= 1e-9;
+                row.value[1] += 1e-9;
+            }
+            Mistake::Range if cell + 1 == cells => row.dof[3] = cells + 1,
+            Mistake::Band if cell > 0 && cell + 1 < cells => {
+                row.value[0] += 1e-3;
+                row.value[1] *= 1.0 - 2e-3 / row.value[1].max(2e-3);
+                row.value[3] += 1.0 - row.value.iter().sum::<f64>();
+            }
+            Mistake::Face => {
+                let moved = 0.1 * row.value[1];
+                row.value[1] -= moved;
+                row.value[2] += moved;
+            }
+            _ => {}
+        }
+        row
+    }
+}
+
+impl BasisFamily<f64, 1> for Faulty {
+    fn degree(&self) -> usize {
+        1
+    }
+
+    fn dofs(&self, grid: &Grid<f64, 1>) -> [usize; 1] {
+        tensor::dofs::<f64, 1, 4, _>(self, grid)
+    }
+
+    fn for_each(
+        &self,
+        grid: &Grid<f64, 1>,
+        cell: &Cell<1>,
+        x: &SVector<f64, 1>,
+        f: impl FnMut(usize, f64, SVector<f64, 1>),
+    ) {
+        tensor::for_each::<f64, 1, 4, _>(self, grid, cell, x, f);
+    }
+
+    fn for_each_at_fixed_point(
+        &self,
+        grid: &Grid<f64, 1>,
+        cell: &Cell<1>,
+        x: &SVector<f64, 1>,
+        f: impl FnMut(usize, f64, SVector<f64, 1>),
+    ) {
+        match self.0 {
+            Mistake::FixedValues => Linear.for_each(grid, &[cell[0].min(2)], x, f),
+            Mistake::Face => self.for_each(grid, cell, x, f),
+            _ => Linear.for_each(grid, cell, x, f),
+        }
+    }
+
+    fn for_each_on_face(&self, grid: &Grid<f64, 1>, face: Face, f: impl FnMut(usize)) {
+        Linear.for_each_on_face(grid, face, f);
+    }
+}
+
+#[test]
+fn mistakes_are_found_and_named() {
+    let found = |mistake| verdict(&Faulty(mistake), &dual_domain(5));
+    assert_eq!(
+        found(Mistake::CentralAtEnds),
+        Some(Property::GradientOfLinearField)
+    );
+    assert_eq!(found(Mistake::OneSidedSum), Some(Property::GradientSum));
+    assert_eq!(found(Mistake::NoUnity), Some(Property::PartitionOfUnity));
+    assert_eq!(found(Mistake::Negative), Some(Property::NonNegative));
+    assert_eq!(found(Mistake::Range), Some(Property::DofInRange));
+    assert_eq!(found(Mistake::Unreached), Some(Property::EveryDofReached));
+    assert_eq!(found(Mistake::Band), Some(Property::HalfBand));
+    assert_eq!(found(Mistake::Face), Some(Property::FaceValues));
+    assert_eq!(found(Mistake::FixedValues), Some(Property::FixedPointValues));
+}
+
+/// The mistake at the ends is one of a claim: with the claim withdrawn, the family passes.
+#[test]
+fn central_differences_at_the_ends_only_lose_the_gradient_of_linear_fields() {
+    let claims = BasisClaims {
+        gradient_reproduces_linear: false,
+        ..dual_domain(5)
+    };
+    assert_eq!(verdict(&Faulty(Mistake::CentralAtEnds), &claims), None);
+}
+
+#[test]
+fn a_failure_says_what_where_and_by_how_much() {
+    let grid = grid::<f64, 1>(5);
+    let failure =
+        check_basis(&Faulty(Mistake::NoUnity), &grid, &[vector![0.0]], &dual_domain(5)).unwrap_err();
+    assert!(matches!(failure.expected, Expected::Near { value: 1.0, allowed } if allowed < 1e-12));
+    assert!((failure.found - 1.0).abs() > 1e-11);
+    let text = failure.to_string();
+    assert!(
+        text.starts_with("values sum to one, at [0.0]: expected 1e0 within"),
+        "{text}"
+    );
+    let outside = check_basis(&Linear, &grid, &[vector![9.0]], &BasisClaims::of_degree(1)).unwrap_err();
+    assert_eq!(outside.property, Property::PointsInGrid);
+}
