@@ -41,12 +41,7 @@ pub fn run() -> Result<Quality, Box<dyn Error>> {
     }
     let volumes = vec![1.0 / 6.0; positions.len()];
     let bins = Bins::new(&grid, &positions).map_err(|outside| format!("point {} is outside", outside.0))?;
-    let cloud = Cloud {
-        grid: &grid,
-        bins: &bins,
-        positions: &positions,
-        volumes: &volumes,
-    };
+    let cloud = Cloud::new(&grid, &bins, &positions, &volumes)?;
 
     let mut fit = Taylor::<f64, 2, 6>::new();
     fit.prepare(&cloud);

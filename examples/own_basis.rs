@@ -17,7 +17,8 @@ use materialpoint::stepper::{Forcing, Setup, Stepper};
 use nalgebra::vector;
 
 /// Quadratic B-splines on plain uniform knots, as many MPM codes use them: every cell has the same three functions.
-/// No function interpolates at the ends, so a wall cannot be held exactly; a free body does not mind.
+/// No function interpolates at the ends, so a wall cannot be held exactly (`testing::check_basis` reports it); a free
+/// body does not mind.
 #[derive(Clone, Copy, Debug)]
 pub struct UniformQuadratic;
 

@@ -44,13 +44,9 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hill<T> {
 
     #[inline(always)]
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, _state: &()) -> T {
-        // Along a principal axis the tangent is C - sigma; the softest-stressed axis is fastest.
-        let lowest = (0..D).fold(T::zero(), |m, a| m.min(stress[(a, a)]));
-        let modulus = if D == 1 {
-            self.moduli.p_wave() - stress[(0, 0)]
-        } else {
-            self.moduli.p_wave() - lowest
-        };
+        // Along an axis the tangent is C - sigma: the most compressed axis is the fastest.
+        let lowest = (1..D).fold(stress[(0, 0)], |lowest, a| lowest.min(stress[(a, a)]));
+        let modulus = self.moduli.p_wave() - lowest;
         (modulus.max(T::zero()) / density).sqrt()
     }
 

@@ -57,12 +57,15 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NeoHookean<T> {
         *stress = self.stress(&state.0);
     }
 
-    /// From `J d sigma/dJ` along the most stretched axis (exact in 1-D, an upper bound beyond).
+    /// From `J d sigma/dJ` along the most stretched axis. Its squared stretch is the largest row sum of `F F^T` (Gershgorin):
+    /// exact where the stretches lie along the axes, an upper bound elsewhere.
     #[inline(always)]
     fn wave_speed(&self, density: T, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         let Moduli { lambda, mu } = self.moduli;
         let j = determinant(&state.0);
-        let stretch_squared = (state.0 * state.0.transpose()).trace();
+        let b = state.0 * state.0.transpose();
+        let row_sum = |i: usize| b.row(i).iter().fold(T::zero(), |sum, x| sum + x.abs());
+        let stretch_squared = (0..D).map(row_sum).fold(T::zero(), |most, sum| most.max(sum));
         let modulus = (lambda * (T::one() - j.ln()) + mu * (T::one() + stretch_squared)) / j;
         (modulus.max(T::zero()) / density).sqrt()
     }

@@ -83,6 +83,16 @@ impl<const D: usize> Bins<D> {
         self.start[0] = 0;
     }
 
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.cell_of.len()
+    }
+
+    /// Whether there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.cell_of.is_empty()
+    }
+
     /// Cell of particle `p`.
     #[inline(always)]
     pub fn cell_of(&self, p: usize) -> &Cell<D> {

@@ -14,6 +14,7 @@ pub use taylor::Taylor;
 
 use nalgebra::SVector;
 
+use crate::error::SetupError;
 use crate::field::Field;
 use crate::grid::{Cell, Grid};
 use crate::particles::Bins;
@@ -21,6 +22,7 @@ use crate::scalar::Scalar;
 
 /// Where the particles are: all that a reconstruction needs to know besides the values.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Cloud<'a, T, const D: usize> {
     /// The grid.
     pub grid: &'a Grid<T, D>,
@@ -30,6 +32,35 @@ pub struct Cloud<'a, T, const D: usize> {
     pub positions: &'a [SVector<T, D>],
     /// Volumes (1-D: m, 2-D: m2, 3-D: m3).
     pub volumes: &'a [T],
+}
+
+impl<'a, T: Scalar, const D: usize> Cloud<'a, T, D> {
+    /// Particles at `positions`, with `bins` made for them on `grid`.
+    ///
+    /// # Errors
+    /// If there are not as many volumes, or cells in `bins`, as positions.
+    pub fn new(
+        grid: &'a Grid<T, D>,
+        bins: &'a Bins<D>,
+        positions: &'a [SVector<T, D>],
+        volumes: &'a [T],
+    ) -> Result<Self, SetupError> {
+        let expected = positions.len();
+        let lengths = [("volumes", volumes.len()), ("bins", bins.len())];
+        if let Some((name, found)) = lengths.into_iter().find(|&(_, found)| found != expected) {
+            return Err(SetupError::Lengths {
+                name,
+                found,
+                expected,
+            });
+        }
+        Ok(Self {
+            grid,
+            bins,
+            positions,
+            volumes,
+        })
+    }
 }
 
 /// A point of the stream.

@@ -35,3 +35,33 @@ fn six_functions_fit_the_field() {
     assert!((quality.rms - 6.170989e-3).abs() < 5e-10, "{:e}", quality.rms);
     assert!(quality.integral < 1e-15, "{:e}", quality.integral);
 }
+
+/// The law of the example keeps what a law promises.
+#[test]
+fn the_own_law_conforms() {
+    use materialpoint::testing::{LawClaims, LawSample, check_law};
+    let law = own_law::Logarithmic { modulus: 1e5 };
+    let sample = LawSample {
+        density: 1e3,
+        strain: 0.05,
+    };
+    let claims = LawClaims {
+        energy_is_work: true,
+        wave_speed_is_sharp: true,
+        objective: true,
+    };
+    check_law::<f64, 1, _>(&law, &sample, &claims).unwrap();
+}
+
+/// The basis of the example does not keep all promises, and the check says which: without repeated knots no function
+/// interpolates at the ends.
+#[test]
+fn the_own_basis_is_told_what_it_lacks() {
+    use materialpoint::testing::{BasisClaims, Property, check_basis};
+    use nalgebra::vector;
+    let grid = materialpoint::grid::Grid::new(vector![0.0], vector![1.0], [6]).unwrap();
+    let points = [vector![0.01], vector![0.25], vector![0.5], vector![0.77]];
+    let claims = BasisClaims::of_degree(2);
+    let failure = check_basis(&own_basis::UniformQuadratic, &grid, &points, &claims).unwrap_err();
+    assert_eq!(failure.property, Property::FaceValues);
+}

@@ -39,12 +39,8 @@ fn the_field_sin_x_cos_y_on_25_cells() {
     let grid = Grid::new(vector![0.0, 0.0], vector![5.0, 5.0], [5, 5]).unwrap();
     let positions = six_points_a_cell(&grid);
     let volumes = vec![1.0 / 6.0; positions.len()];
-    let cloud = Cloud {
-        grid: &grid,
-        bins: &Bins::new(&grid, &positions).unwrap(),
-        positions: &positions,
-        volumes: &volumes,
-    };
+    let bins = Bins::new(&grid, &positions).unwrap();
+    let cloud = Cloud::new(&grid, &bins, &positions, &volumes).unwrap();
     let mut taylor = Taylor::<f64, 2, 6>::new();
     taylor.prepare(&cloud);
     let field = |x: &SVector<f64, 2>| x[0].sin() * x[1].cos();
@@ -85,12 +81,9 @@ fn the_field_sin_x_cos_y_on_25_cells() {
 fn second_cell(points: &[f64]) -> ([f64; 3], Taylor<f64, 1, 3>) {
     let grid = Grid::new(vector![0.0], vector![4.0 * PI], [4]).unwrap();
     let positions: Vec<_> = points.iter().map(|&x| vector![x]).collect();
-    let cloud = Cloud {
-        grid: &grid,
-        bins: &Bins::new(&grid, &positions).unwrap(),
-        positions: &positions,
-        volumes: &vec![1.0; points.len()],
-    };
+    let bins = Bins::new(&grid, &positions).unwrap();
+    let volumes = vec![1.0; points.len()];
+    let cloud = Cloud::new(&grid, &bins, &positions, &volumes).unwrap();
     assert_eq!(cloud.bins.occupied(), [1]);
     let mut taylor = Taylor::<f64, 1, 3>::new();
     taylor.prepare(&cloud);

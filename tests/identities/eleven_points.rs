@@ -75,12 +75,7 @@ fn cloud<'a>(
     at: &'a [SVector<f64, 1>],
     v: &'a [f64],
 ) -> Cloud<'a, f64, 1> {
-    Cloud {
-        grid,
-        bins,
-        positions: at,
-        volumes: v,
-    }
+    Cloud::new(grid, bins, at, v).unwrap()
 }
 
 /// Taylor least squares, each cell's mean the exact one.

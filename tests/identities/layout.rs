@@ -164,12 +164,7 @@ impl<const D: usize> Layout<D> {
 
 impl<T: Scalar, const D: usize> Body<T, D> {
     pub fn cloud(&self) -> Cloud<'_, T, D> {
-        Cloud {
-            grid: &self.grid,
-            bins: &self.bins,
-            positions: &self.positions,
-            volumes: &self.volumes,
-        }
+        Cloud::new(&self.grid, &self.bins, &self.positions, &self.volumes).unwrap()
     }
 }
 

@@ -37,12 +37,7 @@ fn spline<T: Scalar>(x: &[SVector<T, 1>], value: impl Fn(usize) -> T, at: &[T]) 
     let bins = Bins::new(&grid, x).unwrap();
     let volumes = vec![T::one(); x.len()];
     let mut spline = CubicSpline::for_degree(1);
-    spline.prepare(&Cloud {
-        grid: &grid,
-        bins: &bins,
-        positions: x,
-        volumes: &volumes,
-    });
+    spline.prepare(&Cloud::new(&grid, &bins, x, &volumes).unwrap());
     let mut values = Vec::new();
     spline.at_points(value, at.iter().copied(), |_, v| values.push(v));
     values
