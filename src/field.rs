@@ -1,15 +1,15 @@
 //! What can be reconstructed and summed: [`Field`].
 
+use std::ops::Add;
+
 use nalgebra::{SMatrix, SVector};
+use num_traits::Zero;
 
 use crate::scalar::Scalar;
 
 /// A quantity that particles carry and that can be added and scaled: a scalar, a vector, a tensor,
 /// or several of them fitted in one pass ([`MassMomentum`]).
-pub trait Field<T>: Copy {
-    /// The neutral element.
-    fn zero() -> Self;
-
+pub trait Field<T>: Copy + Zero {
     /// `self += weight * other`.
     fn add_scaled(&mut self, weight: T, other: Self);
 
@@ -45,11 +45,6 @@ impl<T: Scalar> Field<T> for T {
     }
 
     #[inline(always)]
-    fn zero() -> Self {
-        T::zero()
-    }
-
-    #[inline(always)]
     fn add_scaled(&mut self, weight: T, other: Self) {
         *self += weight * other;
     }
@@ -69,11 +64,6 @@ impl<T: Scalar, const R: usize, const C: usize> Field<T> for SMatrix<T, R, C> {
     }
 
     #[inline(always)]
-    fn zero() -> Self {
-        SMatrix::zeros()
-    }
-
-    #[inline(always)]
     fn add_scaled(&mut self, weight: T, other: Self) {
         *self += other * weight;
     }
@@ -86,6 +76,32 @@ pub struct MassMomentum<T, const D: usize> {
     pub mass: T,
     /// Linear momentum (kg m/s), or its density.
     pub momentum: SVector<T, D>,
+}
+
+impl<T: Scalar, const D: usize> Add for MassMomentum<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            mass: self.mass + other.mass,
+            momentum: self.momentum + other.momentum,
+        }
+    }
+}
+
+impl<T: Scalar, const D: usize> Zero for MassMomentum<T, D> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self {
+            mass: T::zero(),
+            momentum: SVector::zeros(),
+        }
+    }
+
+    fn is_zero(&self) -> bool {
+        self.mass.is_zero() && self.momentum.is_zero()
+    }
 }
 
 impl<T: Scalar, const D: usize> Field<T> for MassMomentum<T, D> {
@@ -102,14 +118,6 @@ impl<T: Scalar, const D: usize> Field<T> for MassMomentum<T, D> {
             self.mass = value;
         } else {
             self.momentum[i - 1] = value;
-        }
-    }
-
-    #[inline(always)]
-    fn zero() -> Self {
-        Self {
-            mass: T::zero(),
-            momentum: SVector::zeros(),
         }
     }
 

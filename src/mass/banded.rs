@@ -168,6 +168,7 @@ impl<T: Scalar> Banded<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_relative_eq;
     use nalgebra::{DMatrix, vector};
 
     fn sample(n: usize, w: usize) -> (Banded<f64>, DMatrix<f64>) {
@@ -193,7 +194,7 @@ mod tests {
         for (n, w) in [(1, 0), (5, 1), (9, 3), (4, 3)] {
             let (mut banded, dense) = sample(n, w);
             let right: Vec<_> = (0..n).map(|i| vector![i as f64 - 1.0, 2.0]).collect();
-            assert!((banded.total() - dense.sum()).abs() < 1e-12);
+            assert_relative_eq!(banded.total(), dense.sum(), max_relative = 1e-13);
             let mut x = right.clone();
             banded.factorise();
             banded.solve(&mut x, 0);
@@ -202,7 +203,7 @@ mod tests {
                 let b = nalgebra::DVector::from_fn(n, |i, _| right[i][c]);
                 let exact = dense.clone().lu().solve(&b).unwrap();
                 for i in 0..n {
-                    assert!((x[i][c] - exact[i]).abs() < 1e-12);
+                    assert_relative_eq!(x[i][c], exact[i], epsilon = 1e-12);
                 }
             }
         }

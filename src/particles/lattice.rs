@@ -37,6 +37,7 @@ pub fn lattice<T: Scalar, const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_relative_eq;
     use nalgebra::vector;
 
     #[test]
@@ -45,7 +46,7 @@ mod tests {
         let points = lattice(&grid, grid.min(), grid.max(), [3, 2]);
         assert_eq!(points.len(), 30 * 14);
         let volume: f64 = points.iter().map(|p| p.1).sum();
-        assert!((volume - 2.0).abs() < 1e-13);
+        assert_relative_eq!(volume, 2.0, max_relative = 1e-13);
         assert!((points[0].0 - vector![1.0 / 60.0, 2.0 / 28.0]).norm() < 1e-15);
     }
 
@@ -54,6 +55,6 @@ mod tests {
         let grid = Grid::new(vector![0.0], vector![1.0], [4]).unwrap();
         let points: Vec<(SVector<f64, 1>, f64)> = lattice(&grid, &vector![0.3], &vector![0.31], [4]);
         assert_eq!(points.len(), 1);
-        assert!((points[0].0[0] - 0.305).abs() < 1e-15);
+        assert_relative_eq!(points[0].0[0], 0.305, max_relative = 1e-15);
     }
 }
