@@ -61,6 +61,9 @@ struct Shared {
     /// Print the summary as JSON on standard output, and nothing else there.
     #[arg(long, global = true)]
     json: bool,
+    /// Threads to use, at least 1; this version steps on one, whatever is asked.
+    #[arg(long, value_name = "N", default_value_t = 1, global = true, value_parser = clap::value_parser!(u32).range(1..))]
+    threads: u32,
     /// No progress bar.
     #[arg(long, global = true)]
     quiet: bool,

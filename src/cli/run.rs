@@ -79,7 +79,7 @@ fn summary_text(outcome: &Outcome) -> String {
         particle_steps_per_second / 1e6
     ));
     lines.push(format!(
-        "  crossings     {grid_crossings} of cell edges; {reduced_cells} cells fitted with fewer functions at most"
+        "  crossings     {grid_crossings} of cell edges; at most {reduced_cells} cells a step fitted with fewer functions"
     ));
     for (field, norms) in errors {
         lines.push(format!(

@@ -52,10 +52,15 @@ impl Exact {
 pub struct ErrorNorms {
     /// Root mean square, in the field's unit.
     pub rms: f64,
-    /// Root of the sum of squares over that of the reference.
+    /// Root of the sum of squares over that of the reference; not finite, and left out of JSON, where that is zero.
+    #[serde(skip_serializing_if = "is_not_finite")]
     pub relative_l2: f64,
     /// Largest, in the field's unit.
     pub max: f64,
+}
+
+fn is_not_finite(value: &f64) -> bool {
+    !value.is_finite()
 }
 
 impl ErrorNorms {

@@ -3,7 +3,7 @@
 use super::grid::{is_blurred, precision_hint};
 use super::{Item, MOST, Section};
 use crate::scene::expression::coordinates;
-use crate::scene::{Body, GridSpec, ScalarKind, SceneError};
+use crate::scene::{Body, GridSpec, Law, ScalarKind, SceneError};
 
 const KEYS: [&str; 8] = [
     "min",
@@ -44,6 +44,22 @@ pub(super) fn read(root: &Section<'_>, grid: &GridSpec, scalar: ScalarKind) -> R
         bodies.push(body);
     }
     Ok(bodies)
+}
+
+/// Refuses a given stress where the law's state, the deformation, is what stress follows from.
+pub(super) fn check_stress(root: &Section<'_>, law: Law) -> Result<(), SceneError> {
+    if !matches!(law, Law::NeoHookean { .. }) {
+        return Ok(());
+    }
+    let expected = "at least one table, written [[body]]";
+    for entry in root.required("body", expected)?.list(expected)? {
+        if let Some(stress) = entry.section(expected)?.optional("stress") {
+            return Err(stress.conflict(
+                "the stress of a neo-hookean body follows from its deformation, and it starts undeformed; leave it out",
+            ));
+        }
+    }
+    Ok(())
 }
 
 fn one(section: &Section<'_>, grid: &GridSpec) -> Result<Body, SceneError> {

@@ -57,6 +57,7 @@ pub(super) fn scene(table: &Table) -> Result<Scene, SceneError> {
         time,
         method,
     };
+    body::check_stress(&root, scene.material.law)?;
     agreement::check(&scene)?;
     Ok(scene)
 }

@@ -44,6 +44,8 @@ pub(super) const COMBINATIONS: &[Case] = &[
     ("subpoints of a B-spline", Set("method.subpoints=1"), &["method.subpoints = 1", "\"dual-domain\"", "\"shepard\" only"]),
     ("neo-hookean in small strain", Set("material.strain=small\nmaterial.law={neo-hookean={youngs_modulus=1}}"),
      &["material.strain = \"small\"", "neo-hookean", "\"large\""]),
+    ("a stressed neo-hookean body", Set("material.law={neo-hookean={youngs_modulus=1}}"),
+     &["body.0.stress = \"-10*x\"", "starts undeformed"]),
     ("two laws", Set("material.law.neo-hookean.youngs_modulus=1"), &["material.law = {", "exactly one"]),
     ("no law in the table", Set("material.law={}"), &["material.law is missing", "law.linear-elastic ="]),
     ("lists of different lengths", Set("grid.max=[1.0, 2.0]"), &["grid.max = [1.0, 2.0]", "2 of them", "grid.min has 1"]),
