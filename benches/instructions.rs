@@ -63,11 +63,11 @@ fn main() {
     let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
     let fixed = |forcing: Forcing<f64, 1>, end| forcing.with_face(end, FaceCondition::fixed());
     let forcing = ends.into_iter().fold(Forcing::none(), fixed);
-    for method in Method::NINE {
+    for method in Method::ALL {
         if wanted.as_ref().is_some_and(|name| *name != method.to_string()) {
             continue;
         }
-        let mut simulation = method.dispatch(Build).expect("one of the nine");
+        let mut simulation = method.dispatch(Build).expect("one of them");
         step_many(simulation.as_mut(), &forcing);
         println!("{method}: {} particles, {STEPS} steps", CELLS * PER_CELL);
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::basis::{BSpline, BasisFamily, DualDomain, Linear};
-use crate::reconstruction::{CubicSpline, Reconstruction, Shepard, Taylor};
+use crate::reconstruction::{CubicSpline, Reconstruction, RelaxedTaylor, Shepard, Taylor};
 use crate::scalar::Scalar;
 
 /// A basis family by name.
@@ -55,6 +55,8 @@ pub enum ReconstructionKind {
     Shepard,
     /// [`Taylor`].
     Taylor,
+    /// [`RelaxedTaylor`].
+    RelaxedTaylor,
     /// [`CubicSpline`].
     Spline,
 }
@@ -65,6 +67,7 @@ impl ReconstructionKind {
         match self {
             Self::Shepard => "shepard",
             Self::Taylor => "taylor",
+            Self::RelaxedTaylor => "relaxed-taylor",
             Self::Spline => "spline",
         }
     }
@@ -109,6 +112,26 @@ impl Method {
         ]
     };
 
+    /// The nine, and with each basis our own relaxed Taylor least squares.
+    pub const ALL: [Self; 12] = {
+        use ReconstructionKind::RelaxedTaylor;
+        let [ls, lt, lc, ds, dt, dc, bs, bt, bc] = Self::NINE;
+        [
+            ls,
+            lt,
+            Self::new(Basis::Linear, RelaxedTaylor),
+            lc,
+            ds,
+            dt,
+            Self::new(Basis::DualDomain, RelaxedTaylor),
+            dc,
+            bs,
+            bt,
+            Self::new(Basis::BSpline { degree: 2 }, RelaxedTaylor),
+            bc,
+        ]
+    };
+
     /// A pair.
     pub const fn new(basis: Basis, reconstruction: ReconstructionKind) -> Self {
         Self {
@@ -128,6 +151,7 @@ impl Method {
         match self.reconstruction {
             ReconstructionKind::Shepard => basis,
             ReconstructionKind::Taylor => format!("{basis} + TLS"),
+            ReconstructionKind::RelaxedTaylor => format!("{basis} + relaxed TLS"),
             ReconstructionKind::Spline => format!("{basis} + spline"),
         }
     }
@@ -154,6 +178,9 @@ impl Method {
         match self.reconstruction {
             ReconstructionKind::Shepard => visitor.visit(basis, Shepard),
             ReconstructionKind::Taylor => visitor.visit(basis, Taylor::<T, 1, 3>::for_degree(degree)),
+            ReconstructionKind::RelaxedTaylor => {
+                visitor.visit(basis, RelaxedTaylor::<T, 1, 3>::for_degree(degree))
+            }
             ReconstructionKind::Spline => visitor.visit(basis, CubicSpline::for_degree(degree)),
         }
     }

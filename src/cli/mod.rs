@@ -16,7 +16,7 @@ use failure::Failure;
 
 /// The material point method, with basis, reconstruction and law of your choice.
 ///
-/// Without a command: the default study, a vibrating bar at large deformation with nine methods side by side.
+/// Without a command: the default study, a vibrating bar at large deformation with all methods side by side.
 #[derive(Debug, Parser)]
 #[command(version, about)]
 pub(crate) struct Arguments {

@@ -79,7 +79,7 @@ fn plan(flags: &StudyFlags, default_cells: &[usize]) -> Result<Plan, Failure> {
 
 fn methods(list: &str) -> Result<Vec<Method>, Failure> {
     if list == "all" {
-        return Ok(Method::NINE.to_vec());
+        return Ok(Method::ALL.to_vec());
     }
     list.split(',').map(|name| method(name.trim())).collect()
 }
@@ -92,6 +92,7 @@ fn method(name: &str) -> Result<Method, Failure> {
     let kinds = [
         ReconstructionKind::Shepard,
         ReconstructionKind::Taylor,
+        ReconstructionKind::RelaxedTaylor,
         ReconstructionKind::Spline,
     ];
     bases
@@ -100,7 +101,7 @@ fn method(name: &str) -> Result<Method, Failure> {
         .ok_or_else(|| {
             Failure::Input(format!(
                 "--methods: there is no method {name:?}; write all, or basis+reconstruction with linear, dual-domain, \
-                 bspline (degree 2), bspline1 or bspline3 and shepard, taylor or spline"
+                 bspline (degree 2), bspline1 or bspline3 and shepard, taylor, relaxed-taylor or spline"
             ))
         })
 }

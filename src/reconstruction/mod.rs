@@ -4,10 +4,12 @@
 //! `weighted value * grad phi_i` and never knows where the points came from. Shepard streams the particles
 //! themselves, Taylor least squares and the cubic spline stream Gauss points.
 
+mod relaxed_taylor;
 mod shepard;
 mod spline;
 mod taylor;
 
+pub use relaxed_taylor::RelaxedTaylor;
 pub use shepard::Shepard;
 pub use spline::CubicSpline;
 pub use taylor::Taylor;
@@ -86,6 +88,13 @@ pub trait Reconstruction<T: Scalar, const D: usize> {
     /// sum over the particles and always lumped.
     const AMOUNTS_AT_PARTICLES: bool;
 
+    /// Whether both the acceleration and the velocity of the DOFs come from the consistent mass matrix of the particles,
+    /// `sum_p m_p phi_i phi_j`. Only with [`Reconstruction::AMOUNTS_AT_PARTICLES`].
+    const PARTICLE_MATRIX: bool = false;
+
+    /// Whether [`Reconstruction::relax`] does anything.
+    const RELAXES: bool = false;
+
     /// Takes in the geometry. Every field streamed until the next call shares it.
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>);
 
@@ -106,6 +115,11 @@ pub trait Reconstruction<T: Scalar, const D: usize> {
         amount: impl Fn(usize) -> Q,
         sink: impl FnMut(&Point<T, D>, Q),
     );
+
+    /// Moves the particles' `values` towards what the reconstruction sees of them; `weights` (masses) make the fit keep
+    /// the weighted sum. The stepper calls it for the stress, unweighted, right after the force is assembled, and for
+    /// the velocity, weighted, before it is mapped to the DOFs.
+    fn relax<Q: Field<T>>(&mut self, _cloud: &Cloud<'_, T, D>, _weights: Option<&[T]>, _values: &mut [Q]) {}
 
     /// Cells that hold particles but, at the last [`Reconstruction::prepare`], could not be fitted with
     /// the full set of functions.

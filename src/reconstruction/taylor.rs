@@ -146,6 +146,16 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
             .collect()
     }
 
+    /// Share of a function below which it is dropped.
+    pub(super) fn tolerance(&self) -> T {
+        self.tolerance
+    }
+
+    /// The free fit of each occupied cell, ascending.
+    pub(super) fn free_fits(&self) -> impl Iterator<Item = &CellFit<T, NB>> {
+        self.cells.iter().map(|fits| &fits.free)
+    }
+
     fn each_cell(&self, cloud: &Cloud<'_, T, D>) -> impl Iterator<Item = (usize, &CellFits<T, NB>)> {
         cloud.bins.occupied().iter().map(|&c| c as usize).zip(&self.cells)
     }
@@ -176,7 +186,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
 
 /// Local coordinates of the particles of a cell.
 #[inline(always)]
-fn local<'a, T: Scalar, const D: usize>(
+pub(super) fn local<'a, T: Scalar, const D: usize>(
     cloud: &Cloud<'a, T, D>,
     cell: usize,
 ) -> impl Iterator<Item = (usize, SVector<T, D>)> + Clone + 'a {
@@ -194,8 +204,8 @@ fn samples<'a, T: Scalar, const D: usize, Q: Field<T>>(
     cloud: &Cloud<'a, T, D>,
     cell: usize,
     value: &'a impl Fn(usize) -> Q,
-) -> impl Iterator<Item = (SVector<T, D>, Q)> + 'a {
-    local(cloud, cell).map(move |(p, s)| (s, value(p)))
+) -> impl Iterator<Item = (SVector<T, D>, T, Q)> + 'a {
+    local(cloud, cell).map(move |(p, s)| (s, T::one(), value(p)))
 }
 
 #[inline(always)]

@@ -103,7 +103,11 @@ impl Scene {
         let default = Method::default_velocity_mass(method.reconstruction);
         scene.method.basis = method.basis;
         scene.method.reconstruction = method.reconstruction;
-        if !told || method.reconstruction == ReconstructionKind::Shepard {
+        let has_no_other = matches!(
+            method.reconstruction,
+            ReconstructionKind::Shepard | ReconstructionKind::RelaxedTaylor
+        );
+        if !told || has_no_other {
             scene.method.velocity_mass = default;
         }
         scene

@@ -66,12 +66,13 @@ impl Method {
         method::Method::new(self.basis, self.reconstruction)
     }
 
-    /// The velocity mass of a scene that does not name one: lumped for Shepard, which has no other, and
-    /// consistent for the rest.
+    /// The velocity mass of a scene that does not name one: lumped for Shepard and constrained for relaxed Taylor, which
+    /// have no other, and consistent for the rest.
     pub fn default_velocity_mass(reconstruction: ReconstructionKind) -> VelocityMass {
         match reconstruction {
             ReconstructionKind::Shepard => VelocityMass::Lumped,
             ReconstructionKind::Taylor | ReconstructionKind::Spline => VelocityMass::Consistent,
+            ReconstructionKind::RelaxedTaylor => VelocityMass::Constrained,
         }
     }
 }

@@ -118,6 +118,7 @@ fn bodies_boundaries_and_loads_are_read() {
     let scene = read(&[
         "body.0.velocity=['2*x']",
         "body.0.stress='-x'",
+        "material.law={linear-elastic={youngs_modulus=5}}",
         "body.0.jitter=0.4",
         "body.0.seed=7",
         "body.0.initialise=exact",
@@ -149,7 +150,7 @@ fn bodies_boundaries_and_loads_are_read() {
     assert_eq!(scene.time.step, StepSize::Auto { safety: 1.0 });
 }
 
-/// Numbers of method.md, section 6.
+/// Numbers of the journal, section 6.
 #[test]
 fn compiled_in_scenes_are_the_benchmarks() {
     let scene = |name| Scene::from_toml(Scene::builtin(name).unwrap(), &[]).unwrap();

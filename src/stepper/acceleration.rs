@@ -1,5 +1,6 @@
 //! Stage 2: accelerations of the DOFs.
 
+use super::matrix::Unknown;
 use super::{FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::grid::Face;
@@ -19,17 +20,36 @@ where
 {
     /// Turns forces into accelerations; a DOF that no particle reaches has none.
     pub(super) fn accelerate(&mut self, forcing: &Forcing<T, D>) {
-        for (force, &mass) in self.dofs.force.iter_mut().zip(&self.dofs.mass) {
-            *force = if mass > T::zero() {
-                *force / mass + forcing.body_force
-            } else {
-                SVector::zeros()
-            };
+        if R::PARTICLE_MATRIX {
+            self.solve_accelerations(forcing);
+        } else {
+            for (force, &mass) in self.dofs.force.iter_mut().zip(&self.dofs.mass) {
+                *force = if mass > T::zero() {
+                    *force / mass + forcing.body_force
+                } else {
+                    SVector::zeros()
+                };
+            }
         }
         let force = &mut self.dofs.force;
         for_each_held(&self.face_dofs, forcing, |dof, axis, _, acceleration| {
             force[dof][axis] = acceleration;
         });
+    }
+
+    /// `M a = f + m b` with the particles' matrix.
+    fn solve_accelerations(&mut self, forcing: &Forcing<T, D>) {
+        for (force, &mass) in self.dofs.force.iter_mut().zip(&self.dofs.mass) {
+            *force += forcing.body_force * mass;
+        }
+        let pick = |_, acceleration| acceleration;
+        self.dofs.solve(
+            Unknown::Acceleration,
+            self.velocity_mass,
+            &self.face_dofs,
+            forcing,
+            pick,
+        );
     }
 }
 

@@ -42,8 +42,11 @@ where
         self.add_tractions(forcing);
     }
 
-    /// `m_i = sum_p m_p phi_i`.
+    /// `m_i = sum_p m_p phi_i`, and `M_ij = sum_p m_p phi_i phi_j` where the reconstruction wants it.
     pub(super) fn lump_mass(&mut self) {
+        if R::PARTICLE_MATRIX {
+            self.assemble_particle_matrix();
+        }
         let mass = &mut self.dofs.mass;
         mass.fill(T::zero());
         for (p, x) in self.particles.position.iter().enumerate() {
@@ -51,6 +54,18 @@ where
             let cell = self.bins.cell_of(p);
             self.basis
                 .for_each(&self.grid, cell, x, |i, phi, _| mass[i] += m * phi);
+        }
+    }
+
+    fn assemble_particle_matrix(&mut self) {
+        let (basis, grid, matrix) = (&self.basis, &self.grid, &mut self.dofs.matrix);
+        matrix.clear();
+        for (p, x) in self.particles.position.iter().enumerate() {
+            let cell = self.bins.cell_of(p);
+            basis.for_each(grid, cell, x, |i, phi_i, _| {
+                let m = self.particles.mass[p] * phi_i;
+                basis.for_each(grid, cell, x, |j, phi_j, _| matrix.add(i, j, m * phi_j));
+            });
         }
     }
 

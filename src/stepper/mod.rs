@@ -19,6 +19,7 @@ mod critical;
 mod diagnostics;
 mod forces;
 mod forcing;
+mod matrix;
 mod simulation;
 mod velocity;
 
@@ -54,7 +55,8 @@ where
     pub law: L,
     /// Phases.
     pub phase: P,
-    /// Mass behind the DOF velocities; a reconstruction that streams the particles' amounts lumps always.
+    /// Mass behind the DOF velocities; [`crate::reconstruction::Shepard`] lumps always and
+    /// [`crate::reconstruction::RelaxedTaylor`] constrains always.
     pub velocity_mass: VelocityMass,
     /// Particles in their initial state.
     pub particles: Particles<T, D, L::State, P::Particle>,
@@ -153,7 +155,12 @@ where
                 particle,
                 position: values(&particles.position[particle]),
             })?;
-        let own_mass = (!R::AMOUNTS_AT_PARTICLES).then_some(velocity_mass);
+        // Overwritten walls would tear at an acceleration that knows nothing of them.
+        let velocity_mass = match R::PARTICLE_MATRIX {
+            true => VelocityMass::Constrained,
+            false => velocity_mass,
+        };
+        let own_mass = (!R::AMOUNTS_AT_PARTICLES || R::PARTICLE_MATRIX).then_some(velocity_mass);
         let dofs = Dofs::new(basis.dof_count(&grid), basis.half_band(&grid), own_mass);
         let face_dofs = Face::all::<D>()
             .map(|face| {
@@ -194,6 +201,7 @@ where
         self.assemble_forces(forcing);
         self.accelerate(forcing);
         self.update_particle_velocities(dt);
+        self.relax();
         self.map_velocities(forcing);
         self.steps += 1;
         self.time += dt;
@@ -215,6 +223,24 @@ where
         self.reconstruction.prepare(&cloud);
         let reduced = self.reconstruction.reduced_cells();
         self.diagnostics.record_reduced(reduced);
+    }
+
+    /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing has used it
+    /// since), the velocity after its update and before it is mapped.
+    fn relax(&mut self) {
+        if !R::RELAXES {
+            return;
+        }
+        let particles = &mut self.particles;
+        let cloud = Cloud {
+            grid: &self.grid,
+            bins: &self.bins,
+            positions: &particles.position,
+            volumes: &particles.volume,
+        };
+        self.reconstruction.relax(&cloud, None, &mut particles.stress);
+        self.reconstruction
+            .relax(&cloud, Some(&particles.mass), &mut particles.velocity);
     }
 
     /// Looks the cells of the moved particles up.

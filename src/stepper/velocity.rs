@@ -3,7 +3,8 @@
 use nalgebra::SVector;
 
 use super::acceleration::for_each_held;
-use super::{Dofs, Forcing, Stepper};
+use super::matrix::Unknown;
+use super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
 use crate::law::ConstitutiveLaw;
@@ -65,7 +66,11 @@ where
                         momentum[i] += amount * phi;
                     });
                 });
-            sum(&self.dofs.mass)
+            if R::PARTICLE_MATRIX {
+                self.dofs.matrix.total()
+            } else {
+                sum(&self.dofs.mass)
+            }
         } else if self.velocity_mass == VelocityMass::Lumped {
             let lumped = &mut self.dofs.lumped;
             lumped.fill(T::zero());
@@ -102,10 +107,18 @@ where
 
     /// Momentum to velocity, with the told values at held DOFs. DOFs without mass are at rest.
     pub(super) fn divide_by_mass(&mut self, forcing: &Forcing<T, D>) {
-        if R::AMOUNTS_AT_PARTICLES || self.velocity_mass == VelocityMass::Lumped {
+        let own_lumped = !R::AMOUNTS_AT_PARTICLES && self.velocity_mass == VelocityMass::Lumped;
+        if own_lumped || R::AMOUNTS_AT_PARTICLES && !R::PARTICLE_MATRIX {
             self.divide_by_lumped_mass();
         } else {
-            self.solve_consistent(forcing);
+            let pick = |velocity, _| velocity;
+            self.dofs.solve(
+                Unknown::Velocity,
+                self.velocity_mass,
+                &self.face_dofs,
+                forcing,
+                pick,
+            );
         }
         let velocities = &mut self.dofs.velocity;
         for_each_held(&self.face_dofs, forcing, |dof, axis, velocity, _| {
@@ -127,32 +140,6 @@ where
             } else {
                 *velocity / mass
             };
-        }
-    }
-
-    /// `M v = p`, the held DOFs eliminated if they are constraints. They may differ from axis to axis.
-    fn solve_consistent(&mut self, forcing: &Forcing<T, D>) {
-        let Dofs {
-            velocity,
-            matrix,
-            factor,
-            ..
-        } = &mut self.dofs;
-        if self.velocity_mass == VelocityMass::Consistent {
-            factor.copy_from(matrix);
-            factor.factorise();
-            (0..D).for_each(|axis| factor.solve(velocity, axis));
-            return;
-        }
-        for axis in 0..D {
-            factor.copy_from(matrix);
-            for_each_held(&self.face_dofs, forcing, |dof, held, value, _| {
-                if held == axis {
-                    factor.prescribe(dof, axis, value, velocity);
-                }
-            });
-            factor.factorise();
-            factor.solve(velocity, axis);
         }
     }
 }

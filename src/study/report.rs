@@ -28,7 +28,7 @@ pub fn write_files(study: &Study, title: &str, folder: &Folder) -> Result<Vec<Pa
         .iter()
         .map(|(method, run)| stress_panel(*method, run))
         .collect();
-    let fields = draw_grid_of_fields(&format!("{title}: stress"), "x [m]", "stress [Pa]", &panels, 3);
+    let fields = draw_grid_of_fields(&format!("{title}: stress"), "x [m]", "stress [Pa]", &panels, 4);
     Ok(vec![
         records(&study.rows).write_csv(folder, "study.csv")?,
         folder.write("study.svg", &picture)?,
@@ -120,12 +120,14 @@ fn curve(method: Method, point: CurvePoint) -> Curve {
         family: match method.basis {
             Basis::Linear => 0,
             Basis::DualDomain => 1,
-            Basis::BSpline { degree } => 1 + degree,
+            Basis::BSpline { degree: 2 } => 2,
+            Basis::BSpline { degree } => 2 + degree,
         },
         variant: match method.reconstruction {
             ReconstructionKind::Shepard => 0,
             ReconstructionKind::Taylor => 1,
             ReconstructionKind::Spline => 2,
+            ReconstructionKind::RelaxedTaylor => 3,
         },
         points: vec![point],
     }

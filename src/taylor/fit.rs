@@ -45,12 +45,26 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         first: usize,
         tolerance: T,
     ) -> Self {
-        let rows = points.map(|s| taylor_functions::<T, D, NB>(&s));
-        let count = rows.clone().count();
-        let end = count.min(NB);
+        Self::weighted(points.map(|s| (s, T::one())), first, tolerance)
+    }
+
+    /// The same for weighted least squares: `points` come with positive weights, and so must the samples of
+    /// [`CellFit::coefficients`].
+    pub fn weighted<const D: usize>(
+        points: impl Iterator<Item = (SVector<T, D>, T)> + Clone,
+        first: usize,
+        tolerance: T,
+    ) -> Self {
+        let (count, total) = points
+            .clone()
+            .fold((0, T::zero()), |(count, total), (_, weight)| {
+                (count + 1, total + weight)
+            });
+        let rows = points.map(|(s, weight)| taylor_functions::<T, D, NB>(&s) * weight.sqrt());
+        let end = NB.min(count);
         let mut wanted = [false; NB];
         wanted[first.min(end)..end].fill(true);
-        let least = taylor_sizes::<T, D, NB>() * (tolerance * T::count(count).sqrt());
+        let least = taylor_sizes::<T, D, NB>() * (tolerance * total.sqrt());
         Self::from_gram(rows.clone(), &wanted, &least)
             .unwrap_or_else(|| Self::from_rotations(rows, wanted, &least))
     }
@@ -123,22 +137,22 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         self.functions
     }
 
-    /// Coefficients of the field with the given `samples` (local coordinates and value at the same points as
-    /// at the preparation), less `mean`. The mean itself is *not* added to the first coefficient.
+    /// Coefficients of the field with the given `samples` (local coordinates, weight and value at the same points as
+    /// at the preparation; weight 1 unless it was weighted), less `mean`. The mean itself is *not* added to the first coefficient.
     #[inline(always)]
     pub fn coefficients<const D: usize, Q: Field<T>>(
         &self,
-        samples: impl Iterator<Item = (SVector<T, D>, Q)>,
+        samples: impl Iterator<Item = (SVector<T, D>, T, Q)>,
         mean: Q,
     ) -> [Q; NB] {
         let mut moments = [Q::zero(); NB];
-        for (s, value) in samples {
+        for (s, weight, value) in samples {
             let psi = taylor_functions::<T, D, NB>(&s);
             let mut rest = value;
             rest.add_scaled(-T::one(), mean);
             for k in 0..NB {
                 let pi = (0..=k).fold(T::zero(), |sum, j| sum + self.orthonormal[(k, j)] * psi[j]);
-                moments[k].add_scaled(pi, rest);
+                moments[k].add_scaled(weight * pi, rest);
             }
         }
         std::array::from_fn(|j| {

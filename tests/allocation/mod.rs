@@ -50,7 +50,7 @@ fn no_step_after_the_first_allocates() {
     let forcing = ends
         .into_iter()
         .fold(Forcing::none(), |f, end| f.with_face(end, FaceCondition::fixed()));
-    for method in Method::NINE {
+    for method in Method::ALL {
         for mass in [
             VelocityMass::Consistent,
             VelocityMass::Constrained,

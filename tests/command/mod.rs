@@ -103,12 +103,12 @@ fn particles_are_written_with_their_units_and_all_digits() {
 }
 
 #[test]
-fn the_default_command_compares_nine_methods_and_draws_them() {
+fn the_default_command_compares_all_methods_and_draws_them() {
     let (output, folder) = materialpoint("default", &["--json", "--cells", "10,20"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let study: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let rows = study["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 18);
+    assert_eq!(rows.len(), 2 * 12);
     for row in rows {
         for key in [
             "basis",
@@ -219,7 +219,7 @@ fn an_unwritable_folder_ends_with_status_three_before_anything_is_computed() {
 /// was written before stays readable.
 #[test]
 fn an_unstable_run_stops_with_the_step_the_particle_and_the_stable_step() {
-    for method in ["shepard", "taylor", "spline"] {
+    for method in ["shepard", "taylor", "relaxed-taylor", "spline"] {
         let name = format!("unstable-{method}");
         let reconstruction = format!("method.reconstruction=\"{method}\"");
         let arguments = [

@@ -5,6 +5,7 @@ mod critical_step;
 mod full_period;
 mod large_bar;
 mod precision;
+mod relaxed;
 mod small_bar;
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};

@@ -8,7 +8,7 @@ use super::*;
 
 #[test]
 fn single_precision_has_the_errors_of_the_scheme_and_its_own_round_off() {
-    for method in Method::NINE {
+    for method in Method::ALL {
         let [double, single] = ["f64", "f32"].map(|scalar| {
             summary(
                 "vibrating-bar-large",

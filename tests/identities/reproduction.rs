@@ -43,7 +43,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Fitted<T, D, NB> {
             .iter()
             .copied()
             .enumerate()
-            .map(|(p, s)| (s, value(p)));
+            .map(|(p, s)| (s, T::one(), value(p)));
         self.fit.coefficients(samples, T::zero())
     }
 

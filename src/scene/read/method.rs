@@ -13,9 +13,10 @@ const KEYS: [&str; 6] = [
     "scalar",
 ];
 
-const RECONSTRUCTIONS: [(&str, ReconstructionKind); 3] = [
+const RECONSTRUCTIONS: [(&str, ReconstructionKind); 4] = [
     ("shepard", ReconstructionKind::Shepard),
     ("taylor", ReconstructionKind::Taylor),
+    ("relaxed-taylor", ReconstructionKind::RelaxedTaylor),
     ("spline", ReconstructionKind::Spline),
 ];
 
@@ -58,11 +59,14 @@ fn basis(section: &Section<'_>) -> Result<Basis, SceneError> {
 }
 
 fn reconstruction(section: &Section<'_>, dimension: usize) -> Result<ReconstructionKind, SceneError> {
-    let item = section.required("reconstruction", "\"shepard\", \"taylor\" or \"spline\"")?;
-    let reconstruction = item.choice(&RECONSTRUCTIONS, &["relaxed-taylor"])?;
+    let item = section.required(
+        "reconstruction",
+        "\"shepard\", \"taylor\", \"relaxed-taylor\" or \"spline\"",
+    )?;
+    let reconstruction = item.choice(&RECONSTRUCTIONS, &[])?;
     if reconstruction == ReconstructionKind::Spline && dimension > 1 {
         return Err(item.conflict(&format!(
-            "a cubic spline exists in 1-D only and the grid has {dimension} axes; expected \"shepard\" or \"taylor\""
+            "a cubic spline exists in 1-D only and the grid has {dimension} axes; expected \"shepard\", \"taylor\" or \"relaxed-taylor\""
         )));
     }
     Ok(reconstruction)
@@ -101,6 +105,11 @@ fn velocity_mass(
     let mass = item.choice(&allowed, &[])?;
     if reconstruction == ReconstructionKind::Shepard && mass != VelocityMass::Lumped {
         return Err(item.conflict("shepard is always lumped; expected \"lumped\", or leave it out"));
+    }
+    if reconstruction == ReconstructionKind::RelaxedTaylor && mass != VelocityMass::Constrained {
+        return Err(
+            item.conflict("relaxed-taylor is always constrained; expected \"constrained\", or leave it out")
+        );
     }
     Ok(mass)
 }

@@ -2,7 +2,9 @@
 
 use materialpoint::field::Field;
 use materialpoint::grid::Grid;
-use materialpoint::reconstruction::{Cloud, CubicSpline, Point, Reconstruction, Shepard, Taylor};
+use materialpoint::reconstruction::{
+    Cloud, CubicSpline, Point, Reconstruction, RelaxedTaylor, Shepard, Taylor,
+};
 use materialpoint::scalar::Scalar;
 use materialpoint::testing::{Failure, Measure, Property, ReconstructionClaims, check_reconstruction};
 use nalgebra::SVector;
@@ -93,6 +95,7 @@ fn our_reconstructions_keep_their_claims() -> Result<(), Failure> {
     ours::<f64>()?;
     check::<f64, 3, _>(Shepard, 1, SHEPARD)?;
     check::<f64, 3, _>(Taylor::<f64, 3, 10>::new(), 1, TAYLOR)?;
+    check::<f64, 1, _>(RelaxedTaylor::<f64, 1, 3>::for_degree(2), 4, TAYLOR)?;
     check::<f64, 1, _>(CubicSpline::for_degree(1), 4, SPLINE)?;
     check::<f64, 1, _>(CubicSpline::for_degree(2), 4, SPLINE)
 }

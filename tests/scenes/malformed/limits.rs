@@ -14,7 +14,6 @@ pub(super) const NOT_IN_THIS_VERSION: &[Case] = &[
     ("a drained face", Set("boundary.0.drained=true"), &["boundary.0.drained = true", "not possible in this version"]),
     ("gravity", Set("load.gravity=9.81"), &["load.gravity = 9.81", "not possible in this version", "body_force"]),
     ("consolidation", Set("reference={consolidation={}}"), &["reference.consolidation", "not possible in this version", "vibrating-bar"]),
-    ("relaxed Taylor", Set("method.reconstruction=relaxed-taylor"), &["\"relaxed-taylor\" is not possible in this version", "\"taylor\""]),
     ("a logarithmic law", Set("material.law={logarithmic={youngs_modulus=1}}"),
      &["material.law.logarithmic", "not possible in this version", "neo-hookean"]),
     ("Poisson's ratio", Set("material.law.linear-elastic.poissons_ratio=0.3"),

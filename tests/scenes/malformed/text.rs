@@ -53,7 +53,7 @@ pub(super) const TYPES: &[Case] = &[
 #[rustfmt::skip]
 pub(super) const NAMES: &[Case] = &[
     ("an unknown basis", Set("method.basis=quadratic"), &["method.basis = \"quadratic\"", "\"linear\", \"dual-domain\", \"bspline\""]),
-    ("an unknown reconstruction", Set("method.reconstruction=tls"), &["= \"tls\"", "\"shepard\", \"taylor\", \"spline\""]),
+    ("an unknown reconstruction", Set("method.reconstruction=tls"), &["= \"tls\"", "\"shepard\", \"taylor\", \"relaxed-taylor\", \"spline\""]),
     ("an unknown mass", Set("method.velocity_mass=diagonal"), &["= \"diagonal\"", "\"consistent\", ", "\"lumped\""]),
     ("an unknown scalar", Set("method.scalar=f16"), &["method.scalar = \"f16\"", "\"f64\", \"f32\""]),
     ("an unknown strain", Set("material.strain=finite"), &["material.strain = \"finite\"", "\"small\", \"large\""]),

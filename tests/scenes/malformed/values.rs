@@ -38,6 +38,8 @@ pub(super) const NUMBERS: &[Case] = &[
 pub(super) const COMBINATIONS: &[Case] = &[
     ("shepard with consistent mass", Set("method.reconstruction=shepard"),
      &["method.velocity_mass = \"consistent\"", "shepard is always lumped"]),
+    ("relaxed Taylor with overwritten walls", Set("method.reconstruction=relaxed-taylor"),
+     &["method.velocity_mass = \"consistent\"", "relaxed-taylor is always constrained"]),
     ("a degree of linear", Set("method.basis=linear"), &["method.degree = 2", "\"bspline\" only"]),
     ("a degree of zero", Set("method.degree=0"), &["method.degree = 0", "from 1 to 3"]),
     ("a degree of four", Set("method.degree=4"), &["method.degree = 4", "from 1 to 3"]),

@@ -1,0 +1,50 @@
+//! Solving with the consistent mass matrix.
+
+use super::acceleration::for_each_held;
+use super::{Dofs, Forcing};
+use crate::mass::VelocityMass;
+use crate::scalar::Scalar;
+
+/// What is solved for, in place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unknown {
+    /// From forces.
+    Acceleration,
+    /// From momenta.
+    Velocity,
+}
+
+impl<T: Scalar, const D: usize> Dofs<T, D> {
+    /// `M x = right`. The held DOFs are eliminated if they are constraints; they may differ from axis to axis. `pick` says
+    /// which of their told velocity and acceleration counts.
+    pub(super) fn solve(
+        &mut self,
+        unknown: Unknown,
+        mass: VelocityMass,
+        face_dofs: &[Vec<u32>],
+        forcing: &Forcing<T, D>,
+        pick: impl Fn(T, T) -> T,
+    ) {
+        let right = match unknown {
+            Unknown::Acceleration => &mut self.force,
+            Unknown::Velocity => &mut self.velocity,
+        };
+        let factor = &mut self.factor;
+        if mass != VelocityMass::Constrained {
+            factor.copy_from(&self.matrix);
+            factor.factorise();
+            (0..D).for_each(|axis| factor.solve(right, axis));
+            return;
+        }
+        for axis in 0..D {
+            factor.copy_from(&self.matrix);
+            for_each_held(face_dofs, forcing, |dof, held, velocity, acceleration| {
+                if held == axis {
+                    factor.prescribe(dof, axis, pick(velocity, acceleration), right);
+                }
+            });
+            factor.factorise();
+            factor.solve(right, axis);
+        }
+    }
+}
