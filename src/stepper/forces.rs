@@ -19,26 +19,22 @@ where
 {
     pub(super) fn assemble_forces(&mut self, forcing: &Forcing<T, D>) {
         self.lump_mass();
-        let (phase, effective, data) = (&self.phase, &self.particles.stress, &self.particles.phase);
         let cloud = Cloud {
             grid: &self.grid,
             bins: &self.bins,
             positions: &self.particles.position,
             volumes: &self.particles.volume,
         };
-        internal_force(
-            &self.basis,
-            &mut self.reconstruction,
-            &cloud,
-            |p| {
-                if P::COUPLED {
-                    phase.total_stress(&effective[p], &data[p])
-                } else {
-                    effective[p]
-                }
-            },
-            &mut self.dofs.force,
-        );
+        let effective = &self.particles.stress;
+        let (basis, force) = (&self.basis, &mut self.dofs.force);
+        // Two closures rather than one with a branch: what a closure holds costs instructions even where it is not used.
+        if P::COUPLED {
+            let (phase, data) = (&self.phase, &self.particles.phase);
+            let total = |p: usize| phase.total_stress(&effective[p], &data[p]);
+            internal_force(basis, &mut self.reconstruction, &cloud, total, force);
+        } else {
+            internal_force(basis, &mut self.reconstruction, &cloud, |p| effective[p], force);
+        }
         self.add_tractions(forcing);
     }
 
