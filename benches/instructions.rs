@@ -1,6 +1,6 @@
 //! Steps of one method and nothing else, to be run under an instruction counter:
 //!
-//! `valgrind --tool=callgrind --toggle-collect='*step_many*' $(cargo bench --bench instructions --no-run ...) METHOD`
+//! `valgrind --tool=callgrind --toggle-collect='*step_many*' target/release/deps/instructions-* METHOD`
 //!
 //! A count, unlike a time, does not depend on what else the machine does. It shows what a phase, a law or a
 //! reconstruction adds to a step.

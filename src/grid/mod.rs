@@ -126,6 +126,19 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         Some(cell)
     }
 
+    /// Whether `x` lies in `cell`, and so far from its edges that no rounding can matter: the common case, at a fraction of
+    /// the cost of [`Grid::locate`].
+    #[inline(always)]
+    pub fn clearly_holds(&self, cell: &Cell<D>, x: &SVector<T, D>) -> bool {
+        (0..D).all(|axis| {
+            let unit = self.unit_coordinate(axis, cell[axis], x[axis]);
+            // Rounding of the coordinate and of the edges, in cell sizes.
+            let reach = (self.min[axis].abs() + self.max[axis].abs()) * self.inverse_cell_size[axis];
+            let doubt = T::default_epsilon() * T::lit(16.0) * (reach + T::count(self.cells[axis]));
+            unit > doubt && unit < T::one() - doubt
+        })
+    }
+
     #[inline]
     fn locate_on_axis(&self, axis: usize, x: T) -> Option<u32> {
         let (low, high) = (self.min[axis], self.max[axis]);
@@ -186,6 +199,33 @@ mod tests {
                 assert_eq!(grid.locate(&vector![grid.edge(0, i)]), Some([i as u32]));
             }
             assert_eq!(grid.locate(&vector![1.0]), Some([n as u32 - 1]));
+        }
+    }
+
+    /// Points on edges and one rounding unit beside them, also far from the origin.
+    #[test]
+    fn what_a_cell_clearly_holds_is_located_in_it() {
+        for (min, max, n) in [
+            (0.0, 1.0, 10),
+            (-3.0, 0.1, 7),
+            (1e6, 1e6 + 1.0, 13),
+            (-1e-3, 1e3, 1000),
+        ] {
+            let grid = Grid::new(vector![min], vector![max], [n]).unwrap();
+            let mut clear = 0;
+            for i in 0..=n {
+                let edge: f64 = grid.edge(0, i);
+                let middle = edge + 0.4 * (max - min) / n as f64;
+                for x in [edge.next_down(), edge, edge.next_up(), middle] {
+                    for cell in [i.saturating_sub(1), i.min(n - 1)].map(|c| [c as u32]) {
+                        if grid.clearly_holds(&cell, &vector![x]) {
+                            clear += 1;
+                            assert_eq!(grid.locate(&vector![x]), Some(cell), "{min} {max} {n}: {x}");
+                        }
+                    }
+                }
+            }
+            assert!(clear >= n, "the middles are clear");
         }
     }
 

@@ -48,6 +48,9 @@ impl<const D: usize> Bins<D> {
     ) -> Result<usize, Outside> {
         let mut crossings = 0;
         for (p, (old, x)) in self.cell_of.iter_mut().zip(positions).enumerate() {
+            if grid.clearly_holds(old, x) {
+                continue;
+            }
             let cell = grid.locate(x).ok_or(Outside(p))?;
             crossings += usize::from(cell != *old);
             *old = cell;
