@@ -85,7 +85,7 @@ pub trait Reconstruction<T: Scalar, const D: usize> {
     const FIELDS_AT_PARTICLES: bool;
 
     /// Whether [`Reconstruction::integrate_conserved`] streams the particles. The mass of the DOFs is then the
-    /// sum over the particles and always lumped.
+    /// sum over the particles, lumped unless [`Reconstruction::PARTICLE_MATRIX`].
     const AMOUNTS_AT_PARTICLES: bool;
 
     /// Whether both the acceleration and the velocity of the DOFs come from the consistent mass matrix of the particles,

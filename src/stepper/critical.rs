@@ -3,12 +3,12 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::forces::internal_force;
-use super::{FaceCondition, Forcing, Stepper};
+use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::grid::Face;
 use crate::law::ConstitutiveLaw;
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, Reconstruction};
+use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 
 /// Strain by which the law's tangent is probed.
@@ -83,12 +83,7 @@ where
         self.map_momentum();
         self.divide_by_mass(rest);
         let rates: Vec<_> = (0..self.particles.len()).map(|p| self.stress_rate(p)).collect();
-        let cloud = Cloud {
-            grid: &self.grid,
-            bins: &self.bins,
-            positions: &self.particles.position,
-            volumes: &self.particles.volume,
-        };
+        let cloud = cloud(&self.grid, &self.bins, &self.particles);
         let (basis, force) = (&self.basis, &mut self.dofs.force);
         internal_force(basis, &mut self.reconstruction, &cloud, |p| rates[p], force);
         self.accelerate(rest);

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{FaceCondition, Forcing, Stepper};
+use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::law::ConstitutiveLaw;
 use crate::phase::Phase;
@@ -19,12 +19,7 @@ where
 {
     pub(super) fn assemble_forces(&mut self, forcing: &Forcing<T, D>) {
         self.lump_mass();
-        let cloud = Cloud {
-            grid: &self.grid,
-            bins: &self.bins,
-            positions: &self.particles.position,
-            volumes: &self.particles.volume,
-        };
+        let cloud = cloud(&self.grid, &self.bins, &self.particles);
         let effective = &self.particles.stress;
         let (basis, force) = (&self.basis, &mut self.dofs.force);
         // Two closures rather than one with a branch: what a closure holds costs instructions even where it is not used.
@@ -56,10 +51,11 @@ where
     fn assemble_particle_matrix(&mut self) {
         let (basis, grid, matrix) = (&self.basis, &self.grid, &mut self.dofs.matrix);
         matrix.clear();
-        for (p, x) in self.particles.position.iter().enumerate() {
+        let particles = self.particles.position.iter().zip(&self.particles.mass);
+        for (p, (x, &mass)) in particles.enumerate() {
             let cell = self.bins.cell_of(p);
             basis.for_each(grid, cell, x, |i, phi_i, _| {
-                let m = self.particles.mass[p] * phi_i;
+                let m = mass * phi_i;
                 basis.for_each(grid, cell, x, |j, phi_j, _| matrix.add(i, j, m * phi_j));
             });
         }

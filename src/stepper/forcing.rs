@@ -151,3 +151,54 @@ impl<T: Scalar> SurfacePoint<T> {
         x.zip_zip_map(grid.min(), grid.max(), |x, low, high| x.max(low).min(high))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Grid;
+    use nalgebra::vector;
+
+    /// Half the particle's current length beyond its position, on the side it looks to, and never beyond the grid.
+    #[test]
+    fn a_surface_lies_half_a_particle_beyond_it_and_follows_its_length() {
+        let grid = Grid::new(vector![0.0, 0.0], vector![1.0, 1.0], [4, 4]).unwrap();
+        let at = |side, volume: f64| {
+            let point = SurfacePoint {
+                particle: 0,
+                face: Face { axis: 1, side },
+                area: 0.5,
+            };
+            point.position(&grid, &vector![0.5, 0.75], volume)
+        };
+        assert_eq!(at(Side::Max, 0.1), vector![0.5, 0.75 + 0.1]);
+        assert_eq!(at(Side::Min, 0.2), vector![0.5, 0.75 - 0.2]);
+        assert_eq!(at(Side::Max, 0.4), vector![0.5, 1.0]);
+    }
+
+    #[test]
+    fn a_surface_without_particle_axis_or_area_is_refused() {
+        let good = SurfacePoint {
+            particle: 1,
+            face: Face {
+                axis: 0,
+                side: Side::Min,
+            },
+            area: 1.0,
+        };
+        assert!(good.validate::<1>(2).is_ok());
+        assert!(good.validate::<1>(1).is_err());
+        let other = Face {
+            axis: 1,
+            side: Side::Min,
+        };
+        assert!(SurfacePoint { face: other, ..good }.validate::<1>(2).is_err());
+        assert!(
+            SurfacePoint {
+                area: f64::NAN,
+                ..good
+            }
+            .validate::<1>(2)
+            .is_err()
+        );
+    }
+}

@@ -214,12 +214,7 @@ where
         if !(R::FIELDS_AT_PARTICLES && R::AMOUNTS_AT_PARTICLES) {
             self.bins.list(&self.grid);
         }
-        let cloud = Cloud {
-            grid: &self.grid,
-            bins: &self.bins,
-            positions: &self.particles.position,
-            volumes: &self.particles.volume,
-        };
+        let cloud = cloud(&self.grid, &self.bins, &self.particles);
         self.reconstruction.prepare(&cloud);
         let reduced = self.reconstruction.reduced_cells();
         self.diagnostics.record_reduced(reduced);
@@ -321,6 +316,20 @@ where
         let own =
             Particles::<T, D, L::State, P::Particle>::bytes_per_particle() + Bins::<D>::bytes_per_particle();
         own as f64 + shared as f64 / self.particles.len() as f64
+    }
+}
+
+/// The particles as a reconstruction sees them. A function of the parts, so that the rest of a stepper stays free to change.
+fn cloud<'a, T: Scalar, const D: usize, S, P>(
+    grid: &'a Grid<T, D>,
+    bins: &'a Bins<D>,
+    particles: &'a Particles<T, D, S, P>,
+) -> Cloud<'a, T, D> {
+    Cloud {
+        grid,
+        bins,
+        positions: &particles.position,
+        volumes: &particles.volume,
     }
 }
 

@@ -4,13 +4,13 @@ use nalgebra::SVector;
 
 use super::acceleration::for_each_held;
 use super::matrix::Unknown;
-use super::{Forcing, Stepper};
+use super::{Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
 use crate::law::ConstitutiveLaw;
 use crate::mass::VelocityMass;
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, Reconstruction};
+use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
@@ -43,66 +43,77 @@ where
 
     /// Momentum and mass of the DOFs; returns their totals.
     pub(super) fn map_momentum(&mut self) -> MassMomentum<T, D> {
-        let momentum = &mut self.dofs.velocity;
-        momentum.fill(SVector::zeros());
-        let (basis, grid) = (&self.basis, &self.grid);
-        let (mass, velocity) = (&self.particles.mass, &self.particles.velocity);
-        let cloud = Cloud {
-            grid,
-            bins: &self.bins,
-            positions: &self.particles.position,
-            volumes: &self.particles.volume,
-        };
-        let of_particle = |p: usize| MassMomentum {
-            mass: mass[p],
-            momentum: velocity[p] * mass[p],
-        };
-        let total_mass = if R::AMOUNTS_AT_PARTICLES {
-            // The masses are those of stage 1 already.
-            let amount = |p| of_particle(p).momentum;
-            self.reconstruction
-                .integrate_conserved(&cloud, amount, |point, amount| {
-                    basis.for_each(grid, &point.cell, &point.position, |i, phi, _| {
-                        momentum[i] += amount * phi;
-                    });
-                });
-            if R::PARTICLE_MATRIX {
-                self.dofs.matrix.total()
-            } else {
-                sum(&self.dofs.mass)
-            }
+        self.dofs.velocity.fill(SVector::zeros());
+        let mass = if R::AMOUNTS_AT_PARTICLES {
+            self.map_particles()
         } else if self.velocity_mass == VelocityMass::Lumped {
-            let lumped = &mut self.dofs.lumped;
-            lumped.fill(T::zero());
-            self.reconstruction
-                .integrate_conserved(&cloud, of_particle, |point, amount| {
-                    basis.for_each_at_fixed_point(grid, &point.cell, &point.position, |i, phi, _| {
-                        lumped[i] += amount.mass * phi;
-                        momentum[i] += amount.momentum * phi;
-                    });
-                });
-            sum(&self.dofs.lumped)
+            self.map_lumped()
         } else {
-            let matrix = &mut self.dofs.matrix;
-            matrix.clear();
-            self.reconstruction
-                .integrate_conserved(&cloud, of_particle, |point, amount| {
-                    let (cell, x) = (&point.cell, &point.position);
-                    basis.for_each_at_fixed_point(grid, cell, x, |i, phi_i, _| {
-                        momentum[i] += amount.momentum * phi_i;
-                        let m = amount.mass * phi_i;
-                        basis.for_each_at_fixed_point(grid, cell, x, |j, phi_j, _| {
-                            matrix.add(i, j, m * phi_j);
-                        });
+            self.map_consistent()
+        };
+        MassMomentum {
+            mass,
+            momentum: self.dofs.velocity.iter().fold(SVector::zeros(), |s, q| s + q),
+        }
+    }
+
+    /// Momentum straight from the particles; the masses are those of stage 1 already.
+    fn map_particles(&mut self) -> T {
+        let (basis, grid, momentum) = (&self.basis, &self.grid, &mut self.dofs.velocity);
+        let (mass, velocity) = (&self.particles.mass, &self.particles.velocity);
+        let cloud = cloud(grid, &self.bins, &self.particles);
+        self.reconstruction.integrate_conserved(
+            &cloud,
+            |p| velocity[p] * mass[p],
+            |point, amount| {
+                basis.for_each(grid, &point.cell, &point.position, |i, phi, _| {
+                    momentum[i] += amount * phi;
+                });
+            },
+        );
+        if R::PARTICLE_MATRIX {
+            self.dofs.matrix.total()
+        } else {
+            sum(&self.dofs.mass)
+        }
+    }
+
+    /// Momentum and row sums of the mass from the reconstructed densities.
+    fn map_lumped(&mut self) -> T {
+        let (basis, grid) = (&self.basis, &self.grid);
+        let (momentum, lumped) = (&mut self.dofs.velocity, &mut self.dofs.lumped);
+        lumped.fill(T::zero());
+        let cloud = cloud(grid, &self.bins, &self.particles);
+        let amounts = amounts(&self.particles.mass, &self.particles.velocity);
+        self.reconstruction
+            .integrate_conserved(&cloud, amounts, |point, amount| {
+                basis.for_each_at_fixed_point(grid, &point.cell, &point.position, |i, phi, _| {
+                    lumped[i] += amount.mass * phi;
+                    momentum[i] += amount.momentum * phi;
+                });
+            });
+        sum(&self.dofs.lumped)
+    }
+
+    /// Momentum and mass matrix from the reconstructed densities.
+    fn map_consistent(&mut self) -> T {
+        let (basis, grid) = (&self.basis, &self.grid);
+        let (momentum, matrix) = (&mut self.dofs.velocity, &mut self.dofs.matrix);
+        matrix.clear();
+        let cloud = cloud(grid, &self.bins, &self.particles);
+        let amounts = amounts(&self.particles.mass, &self.particles.velocity);
+        self.reconstruction
+            .integrate_conserved(&cloud, amounts, |point, amount| {
+                let (cell, x) = (&point.cell, &point.position);
+                basis.for_each_at_fixed_point(grid, cell, x, |i, phi_i, _| {
+                    momentum[i] += amount.momentum * phi_i;
+                    let m = amount.mass * phi_i;
+                    basis.for_each_at_fixed_point(grid, cell, x, |j, phi_j, _| {
+                        matrix.add(i, j, m * phi_j);
                     });
                 });
-            self.dofs.matrix.total()
-        };
-        let total_momentum = self.dofs.velocity.iter().fold(SVector::zeros(), |s, q| s + q);
-        MassMomentum {
-            mass: total_mass,
-            momentum: total_momentum,
-        }
+            });
+        self.dofs.matrix.total()
     }
 
     /// Momentum to velocity, with the told values at held DOFs. DOFs without mass are at rest.
@@ -141,6 +152,17 @@ where
                 *velocity / mass
             };
         }
+    }
+}
+
+/// Mass and momentum of each particle.
+fn amounts<'a, T: Scalar, const D: usize>(
+    mass: &'a [T],
+    velocity: &'a [SVector<T, D>],
+) -> impl Fn(usize) -> MassMomentum<T, D> + 'a {
+    move |p| MassMomentum {
+        mass: mass[p],
+        momentum: velocity[p] * mass[p],
     }
 }
 
