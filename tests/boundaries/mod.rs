@@ -158,3 +158,49 @@ fn held_bspline_ends_are_exact() {
         assert!(moved[10][0] > 1e-3);
     }
 }
+
+/// One particle, linear functions, no force: the wall's acceleration reaches it with the wall's share, and it moves with the
+/// interpolated velocity.
+#[test]
+fn a_told_motion_reaches_the_particles_with_the_wall_s_share() {
+    use materialpoint::basis::Linear;
+    use materialpoint::grid::{Face, Grid, Side};
+    use materialpoint::law::{LinearElastic, Moduli};
+    use materialpoint::mass::VelocityMass;
+    use materialpoint::particles::Particles;
+    use materialpoint::phase::OnePhase;
+    use materialpoint::reconstruction::Shepard;
+    use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
+    use nalgebra::vector;
+
+    let (share, velocity, acceleration, dt) = (0.75, 0.3, 2.0, 1e-3);
+    let mut stepper = Stepper::new(Setup {
+        grid: Grid::new(vector![0.0], vector![4.0], [4]).unwrap(),
+        basis: Linear,
+        reconstruction: Shepard,
+        law: LinearElastic {
+            moduli: Moduli::uniaxial(1.0).unwrap(),
+        },
+        phase: OnePhase,
+        velocity_mass: VelocityMass::Lumped,
+        particles: Particles::at_rest(&[(vector![1.0 - share], 1.0)], 1.0),
+        surface: Vec::new(),
+    })
+    .unwrap();
+    let wall = Face {
+        axis: 0,
+        side: Side::Min,
+    };
+    let moving = FaceCondition::moving(vector![velocity], vector![acceleration]);
+    stepper
+        .step(dt, &Forcing::none().with_face(wall, moving))
+        .unwrap();
+    let own = share * acceleration * dt;
+    let moved = dt * (share * velocity + (1.0 - share) * own);
+    approx::assert_relative_eq!(stepper.particles().velocity[0][0], own, max_relative = 1e-14);
+    approx::assert_relative_eq!(
+        stepper.particles().displacement[0][0],
+        moved,
+        max_relative = 1e-14
+    );
+}
