@@ -7,4 +7,5 @@ mod conservation;
 mod convergence;
 mod examples;
 mod identities;
+mod phase;
 mod scenes;

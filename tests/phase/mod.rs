@@ -1,0 +1,119 @@
+//! A phase of one's own: pore water that cannot move against the solid (the undrained limit).
+//!
+//! Water of bulk modulus K in pores of porosity n adds the pressure rate (K/n) tr d to the effective stress. In uniaxial strain
+//! a bar of modulus E then behaves as a dry bar of modulus E + K/n: same displacements, total stress shared as E to K/n.
+
+use materialpoint::basis::BSpline;
+use materialpoint::grid::{Face, Grid, Side};
+use materialpoint::law::{LinearElastic, Moduli};
+use materialpoint::mass::VelocityMass;
+use materialpoint::particles::{Particles, lattice};
+use materialpoint::phase::{OnePhase, Phase};
+use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor, Shepard, Taylor};
+use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
+use nalgebra::{SMatrix, vector};
+
+/// `stiffness` is K/n (Pa); a particle carries its pore pressure, tension positive (Pa).
+#[derive(Clone, Copy, Debug)]
+struct LockedWater {
+    stiffness: f64,
+}
+
+impl<const D: usize> Phase<f64, D> for LockedWater {
+    const COUPLED: bool = true;
+    type Particle = f64;
+
+    fn total_stress(&self, effective: &SMatrix<f64, D, D>, pressure: &f64) -> SMatrix<f64, D, D> {
+        effective + SMatrix::identity() * *pressure
+    }
+
+    fn update(&self, increment: &SMatrix<f64, D, D>, pressure: &mut f64) {
+        *pressure += self.stiffness * increment.trace();
+    }
+}
+
+fn fixed_ends() -> Forcing<f64, 1> {
+    let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
+    ends.into_iter()
+        .fold(Forcing::none(), |f, end| f.with_face(end, FaceCondition::fixed()))
+}
+
+fn bar<R: Reconstruction<f64, 1>, P: Phase<f64, 1>>(
+    reconstruction: R,
+    modulus: f64,
+    phase: P,
+) -> Stepper<f64, 1, BSpline<2>, R, LinearElastic<f64>, P> {
+    let grid = Grid::new(vector![0.0], vector![1.0], [10]).unwrap();
+    let points = lattice(&grid, grid.min(), grid.max(), [6]);
+    let mut particles = Particles::at_rest(&points, 2e3);
+    for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
+        v[0] = 0.1 * (std::f64::consts::PI * x[0]).sin();
+    }
+    let moduli = Moduli::uniaxial(modulus).unwrap();
+    Stepper::new(Setup {
+        grid,
+        basis: BSpline::<2>,
+        reconstruction,
+        law: LinearElastic { moduli },
+        phase,
+        velocity_mass: VelocityMass::Consistent,
+        particles,
+        surface: Vec::new(),
+    })
+    .unwrap()
+}
+
+fn compare<R: Reconstruction<f64, 1> + Clone>(reconstruction: R) {
+    let (solid, water) = (3e6, 4e6);
+    let mut wet = bar(reconstruction.clone(), solid, LockedWater { stiffness: water });
+    let mut dry = bar(reconstruction, solid + water, OnePhase);
+    let forcing = fixed_ends();
+    let steps = [wet.critical_step(&forcing), dry.critical_step(&forcing)].map(Option::unwrap);
+    approx::assert_relative_eq!(steps[0], steps[1], max_relative = 1e-6);
+    for _ in 0..200 {
+        wet.step(2e-5, &forcing).unwrap();
+        dry.step(2e-5, &forcing).unwrap();
+    }
+    let (wet, dry) = (wet.particles(), dry.particles());
+    for p in 0..dry.len() {
+        let total = wet.stress[p][(0, 0)] + wet.phase[p];
+        let size = 0.1 * (7e6_f64 * 2e3).sqrt();
+        approx::assert_abs_diff_eq!(total, dry.stress[p][(0, 0)], epsilon = 1e-9 * size);
+        approx::assert_abs_diff_eq!(
+            wet.phase[p] / water,
+            wet.stress[p][(0, 0)] / solid,
+            epsilon = 1e-12
+        );
+    }
+    assert!(wet.phase.iter().any(|p| p.abs() > 1e3), "the bar does swing");
+}
+
+#[test]
+fn locked_pore_water_stiffens_the_bar_by_its_own_modulus() {
+    compare(Shepard);
+    compare(Taylor::<f64, 1, 3>::new());
+}
+
+/// The relaxation takes the effective stress towards its fit and leaves the pressure: the sum is the dry bar's no longer, but
+/// the motion is still that of the stiffer bar.
+#[test]
+fn a_relaxed_step_takes_a_second_phase_too() {
+    let mut wet = bar(
+        RelaxedTaylor::<f64, 1, 3>::for_degree(2),
+        3e6,
+        LockedWater { stiffness: 4e6 },
+    );
+    let mut dry = bar(RelaxedTaylor::<f64, 1, 3>::for_degree(2), 7e6, OnePhase);
+    for _ in 0..200 {
+        wet.step(2e-5, &fixed_ends()).unwrap();
+        dry.step(2e-5, &fixed_ends()).unwrap();
+    }
+    for (a, b) in wet
+        .particles()
+        .displacement
+        .iter()
+        .zip(&dry.particles().displacement)
+    {
+        approx::assert_abs_diff_eq!(a[0], b[0], epsilon = 1e-8);
+    }
+}
