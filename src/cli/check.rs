@@ -1,7 +1,7 @@
 //! `materialpoint check`.
 
 use materialpoint::run::{MethodSummary, critical_step, simulation};
-use materialpoint::scene::StepSize;
+use materialpoint::scene::{ReconstructionKind, Scene, StepSize};
 use serde_json::json;
 
 use super::Shared;
@@ -14,10 +14,7 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     let built = simulation(&scene)?;
     let critical = critical_step(&scene)?;
     let method = MethodSummary::of(&scene);
-    let mechanism = format!(
-        "an elastic wave crossing a cell: {} basis, {} mass in the velocity, lumped in the acceleration",
-        method.basis, method.velocity_mass
-    );
+    let mechanism = mechanism(&scene);
     let unknowns = scene.dimension();
     let fields = [
         "initial position",
@@ -77,4 +74,20 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
         None => lines.push("  stable step   any: nothing resists a motion of these particles".to_owned()),
     }
     print(&(lines.join("\n") + "\n"))
+}
+
+/// What limits the step: in one phase always the wave; how fast it may be depends on the masses.
+fn mechanism(scene: &Scene) -> String {
+    let method = &scene.method;
+    let masses = match method.reconstruction {
+        ReconstructionKind::RelaxedTaylor => "consistent mass in velocity and acceleration".to_owned(),
+        _ => format!(
+            "{} mass in the velocity, lumped in the acceleration",
+            method.velocity_mass.name()
+        ),
+    };
+    format!(
+        "an elastic wave crossing a cell: {} basis, {masses}",
+        method.basis.name()
+    )
 }

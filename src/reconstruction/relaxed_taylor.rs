@@ -19,8 +19,8 @@ const DEFAULT_RELAXATION: f64 = 0.1;
 ///
 /// Particles carry more than a cell's polynomial sees. What the fit does not see does no work now, and returns when
 /// particles cross. The fit of the velocity is weighted with the masses: it keeps the momentum exactly and never raises the
-/// kinetic energy, because it is a projection in the very product that measures it. The stress of a law that keeps a
-/// deformation of its own is overwritten by that law, so its relaxation lasts for one step only.
+/// kinetic energy, because it is a projection in the very product that measures it. The stress of a law with a
+/// state of its own (a deformation, plastic history) is bound to that state and not relaxed.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {

@@ -233,7 +233,10 @@ where
             positions: &particles.position,
             volumes: &particles.volume,
         };
-        self.reconstruction.relax(&cloud, None, &mut particles.stress);
+        // The stress of a law that remembers follows from its state, or is bound to it: it must not be moved alone.
+        if size_of::<L::State>() == 0 {
+            self.reconstruction.relax(&cloud, None, &mut particles.stress);
+        }
         self.reconstruction
             .relax(&cloud, Some(&particles.mass), &mut particles.velocity);
     }

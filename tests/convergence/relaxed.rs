@@ -78,3 +78,65 @@ fn the_smooth_run_keeps_its_energy_where_the_published_method_gains() {
     let published = smooth(Method::new(LINEAR, TAYLOR), "time.end=6.0").energy;
     assert_close("published, linear", published.highest_ratio.unwrap(), 1.34, 0.03);
 }
+
+/// A law that leaves the stress as it is, with a state `S` of its own.
+#[derive(Clone, Copy)]
+struct Frozen<S>(std::marker::PhantomData<S>);
+
+impl<S: Copy + Default> materialpoint::law::ConstitutiveLaw<f64, 1> for Frozen<S> {
+    type State = S;
+
+    fn large_strain(&self) -> bool {
+        false
+    }
+
+    fn update(&self, _: &nalgebra::Matrix1<f64>, _: &mut nalgebra::Matrix1<f64>, _: &mut S) {}
+
+    fn wave_speed(&self, _: f64, _: &nalgebra::Matrix1<f64>, _: &S) -> f64 {
+        1.0
+    }
+
+    fn energy_density(&self, _: &nalgebra::Matrix1<f64>, _: &S) -> f64 {
+        0.0
+    }
+}
+
+/// Whether one step moves rough stresses towards their fit.
+fn moves_the_stress<S: Copy + Default>() -> bool {
+    use materialpoint::basis::BSpline;
+    use materialpoint::grid::Grid;
+    use materialpoint::mass::VelocityMass;
+    use materialpoint::particles::{Particles, lattice};
+    use materialpoint::phase::OnePhase;
+    use materialpoint::reconstruction::RelaxedTaylor;
+    use materialpoint::stepper::{Forcing, Setup, Stepper};
+    use nalgebra::vector;
+
+    let grid = Grid::new(vector![0.0], vector![1.0], [4]).unwrap();
+    let points = lattice(&grid, grid.min(), grid.max(), [6]);
+    let mut particles = Particles::at_rest(&points, 1.0);
+    for (p, stress) in particles.stress.iter_mut().enumerate() {
+        stress[(0, 0)] = (p * 5 % 7) as f64;
+    }
+    let before = particles.stress.clone();
+    let mut stepper = Stepper::new(Setup {
+        grid,
+        basis: BSpline::<2>,
+        reconstruction: RelaxedTaylor::<f64, 1, 3>::for_degree(2),
+        law: Frozen(std::marker::PhantomData::<S>),
+        phase: OnePhase,
+        velocity_mass: VelocityMass::Constrained,
+        particles,
+        surface: Vec::new(),
+    })
+    .unwrap();
+    stepper.step(1e-6, &Forcing::none()).unwrap();
+    stepper.particles().stress != before
+}
+
+/// Plastic history, a deformation gradient: stress is bound to it and must not be moved without it.
+#[test]
+fn the_stress_of_a_law_with_a_state_is_not_relaxed() {
+    assert!(moves_the_stress::<()>());
+    assert!(!moves_the_stress::<f64>());
+}
