@@ -69,6 +69,7 @@ pub fn run() -> Result<f64, Box<dyn Error>> {
         particle: particles.len() - 1,
         face: face(Side::Max),
         area: 1.0,
+        reach: 0.5,
     }];
     let mut stepper = Stepper::new(Setup {
         grid,

@@ -48,6 +48,11 @@ pub enum SetupError {
         /// Number of positions.
         expected: usize,
     },
+    /// A reconstruction that knows no liquid.
+    #[error(
+        "relaxed Taylor least squares know one phase only so far; with a liquid that flows use Shepard, Taylor or a cubic spline"
+    )]
+    OnePhaseOnly,
     /// A particle outside the grid.
     #[error("particle {particle} starts at {position:?}, outside the grid")]
     Outside {
@@ -111,4 +116,16 @@ pub enum StepError {
         /// The step asked for (s).
         value: f64,
     },
+}
+
+impl StepError {
+    /// A volume that is no longer a positive number.
+    pub(crate) fn volume<T: crate::scalar::Scalar>(step: usize, particle: usize, volume: T) -> Self {
+        Self::Invalid {
+            step,
+            particle,
+            name: "volume",
+            value: volume.primal(),
+        }
+    }
 }

@@ -69,6 +69,61 @@ impl<T: Scalar, const R: usize, const C: usize> Field<T> for SMatrix<T, R, C> {
     }
 }
 
+/// Two fields mapped together: one pass, one fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair<A, B>(pub A, pub B);
+
+impl<A: Add<Output = A>, B: Add<Output = B>> Add for Pair<A, B> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0, self.1 + other.1)
+    }
+}
+
+impl<A: Zero, B: Zero> Zero for Pair<A, B> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self(A::zero(), B::zero())
+    }
+
+    fn is_zero(&self) -> bool {
+        self.0.is_zero() && self.1.is_zero()
+    }
+}
+
+impl<T, A: Field<T>, B: Field<T>> Field<T> for Pair<A, B>
+where
+    T: Copy,
+{
+    const COMPONENTS: usize = A::COMPONENTS + B::COMPONENTS;
+
+    #[inline(always)]
+    fn component(&self, i: usize) -> T {
+        if i < A::COMPONENTS {
+            self.0.component(i)
+        } else {
+            self.1.component(i - A::COMPONENTS)
+        }
+    }
+
+    #[inline(always)]
+    fn set_component(&mut self, i: usize, value: T) {
+        if i < A::COMPONENTS {
+            self.0.set_component(i, value);
+        } else {
+            self.1.set_component(i - A::COMPONENTS, value);
+        }
+    }
+
+    #[inline(always)]
+    fn add_scaled(&mut self, weight: T, other: Self) {
+        self.0.add_scaled(weight, other.0);
+        self.1.add_scaled(weight, other.1);
+    }
+}
+
 /// Mass and linear momentum, or their densities, mapped together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassMomentum<T, const D: usize> {

@@ -12,7 +12,8 @@ use super::run::load;
 pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     let scene = load(name, &shared.set)?;
     let built = simulation(&scene)?;
-    let critical = critical_step(&scene)?;
+    let limit = critical_step(&scene)?;
+    let critical = limit.map(|limit| limit.step);
     let method = MethodSummary::of(&scene);
     let mechanism = mechanism(&scene);
     let unknowns = scene.dimension();

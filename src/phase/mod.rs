@@ -1,16 +1,30 @@
 //! Phases: what shares the pores with the solid.
 
-use nalgebra::SMatrix;
+mod one;
+mod two;
 
+pub use one::OnePhase;
+pub use two::{Drag, PoreLiquid, TwoPhase};
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::error::SetupError;
 use crate::scalar::Scalar;
 
 /// What a particle carries besides its solid, and how that enters the balance of momentum.
 ///
-/// [`OnePhase`] is the dry solid: no data, no work. Everything a phase adds to the step stands under
-/// `if P::COUPLED`, since zero-sized data alone leave empty loops behind.
+/// [`OnePhase`] is the dry solid: no data, no work. [`TwoPhase`] is a solid whose pores are full of a liquid that moves
+/// with a velocity of its own. Everything a phase adds to the step stands under `if P::COUPLED` or `if P::FLOWS`, since
+/// zero-sized data alone leave empty loops behind.
+///
+/// The hooks below [`Phase::update`] are asked only of a phase that [`Phase::FLOWS`]; masses and forces of the liquid are
+/// those of [`mod@crate::stepper`]'s second balance of momentum.
 pub trait Phase<T: Scalar, const D: usize> {
     /// Whether there is anything but the solid.
     const COUPLED: bool;
+
+    /// Whether a liquid moves through the pores with a velocity of its own. Implies [`Phase::COUPLED`].
+    const FLOWS: bool = false;
 
     /// Data per particle; `()` takes no memory.
     type Particle: Copy + Default;
@@ -18,23 +32,61 @@ pub trait Phase<T: Scalar, const D: usize> {
     /// Stress (Pa) that the momentum balance of the whole feels, given the solid's effective stress.
     fn total_stress(&self, effective: &SMatrix<T, D, D>, particle: &Self::Particle) -> SMatrix<T, D, D>;
 
-    /// Carries the data over the displacement gradient `increment` of one step.
+    /// Carries the data of a phase that does not flow over the displacement gradient `increment` of one step.
     fn update(&self, increment: &SMatrix<T, D, D>, particle: &mut Self::Particle);
-}
 
-/// The dry solid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct OnePhase;
-
-impl<T: Scalar, const D: usize> Phase<T, D> for OnePhase {
-    const COUPLED: bool = false;
-    type Particle = ();
-
-    #[inline(always)]
-    fn total_stress(&self, effective: &SMatrix<T, D, D>, _particle: &()) -> SMatrix<T, D, D> {
-        *effective
+    /// Checks the constants.
+    ///
+    /// # Errors
+    /// If one of them makes no sense.
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
     }
 
-    #[inline(always)]
-    fn update(&self, _increment: &SMatrix<T, D, D>, _particle: &mut ()) {}
+    /// Carries the data over the displacement gradients of solid and liquid.
+    fn update_with_flow(
+        &self,
+        _solid: &SMatrix<T, D, D>,
+        _liquid: &SMatrix<T, D, D>,
+        _particle: &mut Self::Particle,
+    ) {
+    }
+
+    /// Velocity (m/s) and pressure (Pa, tension positive) of a particle's liquid.
+    fn liquid(&self, _particle: &Self::Particle) -> PoreLiquid<T, D> {
+        PoreLiquid::default()
+    }
+
+    /// Adds to the velocity (m/s) of a particle's liquid.
+    fn accelerate_liquid(&self, _change: SVector<T, D>, _particle: &mut Self::Particle) {}
+
+    /// Share of the volume that the liquid fills.
+    fn porosity(&self) -> T {
+        T::one()
+    }
+
+    /// Mass of the liquid in a particle of the given `volume`.
+    fn liquid_mass(&self, _volume: T) -> T {
+        T::zero()
+    }
+
+    /// Drag of a particle (kg/s in 3-D): the force on its liquid, per porosity, for each m/s by which the solid is faster.
+    fn drag(&self, _solid_mass: T, _volume: T) -> T {
+        T::zero()
+    }
+
+    /// Whether the drag of a step is felt by the velocity at the step's start or at its end.
+    fn drag_treatment(&self) -> Drag {
+        Drag::Implicit
+    }
+
+    /// Stiffness (Pa) of the liquid in its pores: pressure rate per volume rate of the liquid's flow, `K / n`.
+    fn liquid_stiffness(&self) -> T {
+        T::zero()
+    }
+
+    /// Energy that the compressed liquid stores, per volume (J/m3).
+    fn liquid_energy_density(&self, _particle: &Self::Particle) -> T {
+        T::zero()
+    }
 }

@@ -4,11 +4,13 @@
 //! `weighted value * grad phi_i` and never knows where the points came from. Shepard streams the particles
 //! themselves, Taylor least squares and the cubic spline stream Gauss points.
 
+mod patch;
 mod relaxed_taylor;
 mod shepard;
 mod spline;
 mod taylor;
 
+pub use patch::{Cut, Patch};
 pub use relaxed_taylor::RelaxedTaylor;
 pub use shepard::Shepard;
 pub use spline::CubicSpline;
@@ -34,6 +36,8 @@ pub struct Cloud<'a, T, const D: usize> {
     pub positions: &'a [SVector<T, D>],
     /// Volumes (1-D: m, 2-D: m2, 3-D: m3).
     pub volumes: &'a [T],
+    /// Where bodies end within a cell; none if cells count as full.
+    pub cuts: &'a [Cut<T>],
 }
 
 impl<'a, T: Scalar, const D: usize> Cloud<'a, T, D> {
@@ -61,7 +65,25 @@ impl<'a, T: Scalar, const D: usize> Cloud<'a, T, D> {
             bins,
             positions,
             volumes,
+            cuts: &[],
         })
+    }
+
+    /// With the surfaces where bodies end.
+    #[must_use]
+    pub fn with_cuts(mut self, cuts: &'a [Cut<T>]) -> Self {
+        self.cuts = cuts;
+        self
+    }
+
+    /// What a fit of the cell with number `cell` covers.
+    #[inline(always)]
+    pub fn patch(&self, cell: usize) -> Patch<T, D> {
+        if self.cuts.is_empty() {
+            Patch::whole(self.grid, cell)
+        } else {
+            Patch::cut(self.grid, cell, self.cuts)
+        }
     }
 }
 

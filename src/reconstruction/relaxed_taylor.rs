@@ -1,7 +1,7 @@
 //! Relaxed Taylor least squares.
 
 use super::taylor::local;
-use super::{Cloud, Point, Reconstruction, Shepard, Taylor};
+use super::{Cloud, Patch, Point, Reconstruction, Shepard, Taylor};
 use crate::field::Field;
 use crate::scalar::Scalar;
 use crate::taylor::{CellFit, taylor_functions};
@@ -55,14 +55,14 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     fn relax_cell<Q: Field<T>>(
         &self,
         cloud: &Cloud<'_, T, D>,
-        cell: usize,
+        (cell, patch): (usize, &Patch<T, D>),
         fit: &CellFit<T, NB>,
         weight: impl Fn(usize) -> T,
         values: &mut [Q],
     ) {
-        let samples = local(cloud, cell).map(|(p, s)| (s, weight(p), values[p]));
+        let samples = local(cloud, cell, patch).map(|(p, s)| (s, weight(p), values[p]));
         let coefficients = fit.coefficients(samples, Q::zero());
-        for (p, s) in local(cloud, cell) {
+        for (p, s) in local(cloud, cell, patch) {
             let psi = taylor_functions::<T, D, NB>(&s);
             let mut unseen = values[p].scaled(-T::one());
             for k in (0..NB).rev() {
@@ -104,18 +104,14 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     }
 
     fn relax<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, weights: Option<&[T]>, values: &mut [Q]) {
-        let cells = cloud.bins.occupied().iter().map(|&cell| cell as usize);
-        match weights {
-            None => {
-                for (cell, fit) in cells.zip(self.taylor.free_fits()) {
-                    self.relax_cell(cloud, cell, fit, |_| T::one(), values);
-                }
-            }
-            Some(weights) => {
-                for cell in cells {
-                    let points = local(cloud, cell).map(|(p, s)| (s, weights[p]));
+        for (cell, fits) in self.taylor.each_cell(cloud) {
+            let place = (cell, &fits.patch);
+            match weights {
+                None => self.relax_cell(cloud, place, &fits.free, |_| T::one(), values),
+                Some(weights) => {
+                    let points = local(cloud, cell, &fits.patch).map(|(p, s)| (s, weights[p]));
                     let fit = CellFit::weighted(points, 0, self.taylor.tolerance());
-                    self.relax_cell(cloud, cell, &fit, |p| weights[p], values);
+                    self.relax_cell(cloud, place, &fit, |p| weights[p], values);
                 }
             }
         }

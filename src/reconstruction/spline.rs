@@ -8,7 +8,7 @@ use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
 
 /// Cubic not-a-knot spline through all particle values (Tielen, Wobbes, Moller & Beuth 2017), 1-D only, evaluated
-/// at Gauss points of the occupied cells. Accurate, but it keeps neither mass nor momentum.
+/// at Gauss points of the occupied cells (up to the surface in a cell that it cuts). Accurate, but it keeps neither mass nor momentum.
 ///
 /// Beyond the outermost particles the end polynomials are continued. Particles at one and the same position
 /// enter with the mean of their values. With three distinct positions the spline is a parabola, with two a
@@ -241,11 +241,10 @@ impl<T: Scalar> CubicSpline<T> {
         self.fit(value);
         let last = self.knots.len().saturating_sub(2);
         let pieces = T::count(self.pieces);
-        let half = cloud.grid.cell_size()[0] / (pieces * T::lit(2.0));
         let mut i = 0;
         for &number in cloud.bins.occupied() {
-            let cell = cloud.grid.cell(number as usize);
-            let centre = cloud.grid.centre(&cell)[0];
+            let patch = cloud.patch(number as usize);
+            let (cell, centre, half) = (patch.cell, patch.centre[0], patch.half[0] / pieces);
             for piece in 0..self.pieces {
                 let offset = T::count(2 * piece + 1) - pieces;
                 for &(s, weight) in &self.rule {

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{Cloud, Point, Reconstruction};
+use super::{Cloud, Patch, Point, Reconstruction};
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::quadrature::gauss_legendre;
@@ -15,14 +15,15 @@ use crate::taylor::{CellFit, DEFAULT_TOLERANCE, taylor_functions};
 /// $$\hat q_e = \sum_k a_k\psi_k,\qquad \int_e\hat q_e = a_1|e|.$$
 ///
 /// Fields (stress) are fitted freely; densities (mass, momentum) keep the cell's integral, because their $a_1$ is the cell's
-/// amount over its volume (journal, equation 14). A cell never uses more functions than it has particles, nor one that
+/// amount over its volume (journal, equation 14). A cell that a body's surface cuts is fitted and integrated up to the
+/// surface ([`Cloud::cuts`]). A cell never uses more functions than it has particles, nor one that
 /// its layout cannot tell from the others. The functions are those of [`mod@crate::taylor`].
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct Taylor<T, const D: usize, const NB: usize> {
     rule: Vec<Node<T, D, NB>>,
     tolerance: T,
-    cells: Vec<CellFits<T, NB>>,
+    cells: Vec<CellFits<T, D, NB>>,
     reduced: usize,
 }
 
@@ -34,9 +35,11 @@ struct Node<T, const D: usize, const NB: usize> {
     psi: SVector<T, NB>,
 }
 
+/// The fits of one occupied cell and the box they cover.
 #[derive(Clone, Debug)]
-struct CellFits<T, const NB: usize> {
-    free: CellFit<T, NB>,
+pub(super) struct CellFits<T, const D: usize, const NB: usize> {
+    pub(super) patch: Patch<T, D>,
+    pub(super) free: CellFit<T, NB>,
     conserved: CellFit<T, NB>,
 }
 
@@ -99,9 +102,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         cloud: &Cloud<'_, T, D>,
         amount: impl Fn(usize) -> Q,
     ) -> Vec<[Q; NB]> {
-        let volume = cloud.grid.cell_volume();
         self.each_cell(cloud)
-            .map(|(cell, fits)| conserved(fits, cloud, cell, volume, &amount))
+            .map(|(cell, fits)| conserved(fits, cloud, cell, &amount))
             .collect()
     }
 
@@ -114,7 +116,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
     ) -> Vec<[Q; NB]> {
         self.each_cell(cloud)
             .map(|(cell, fits)| {
-                let mean = mean(&cloud.grid.cell(cell));
+                let mean = mean(&fits.patch.cell);
                 fit_about_mean(fits, cloud, cell, &value, mean)
             })
             .collect()
@@ -130,8 +132,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
         let coefficients = self.coefficients_with_mean(cloud, value, mean);
-        for ((cell, _), coefficients) in self.each_cell(cloud).zip(&coefficients) {
-            self.emit(cloud, cell, coefficients, &mut sink);
+        for (fits, coefficients) in self.cells.iter().zip(&coefficients) {
+            self.emit(&fits.patch, coefficients, &mut sink);
         }
     }
 
@@ -142,7 +144,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         value: impl Fn(usize) -> Q,
     ) -> Vec<[Q; NB]> {
         self.each_cell(cloud)
-            .map(|(cell, fits)| fits.free.coefficients(samples(cloud, cell, &value), Q::zero()))
+            .map(|(cell, fits)| free(fits, cloud, cell, &value))
             .collect()
     }
 
@@ -151,51 +153,47 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         self.tolerance
     }
 
-    /// The free fit of each occupied cell, ascending.
-    pub(super) fn free_fits(&self) -> impl Iterator<Item = &CellFit<T, NB>> {
-        self.cells.iter().map(|fits| &fits.free)
-    }
-
-    fn each_cell(&self, cloud: &Cloud<'_, T, D>) -> impl Iterator<Item = (usize, &CellFits<T, NB>)> {
+    /// Numbers and fits of the occupied cells, ascending.
+    pub(super) fn each_cell(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+    ) -> impl Iterator<Item = (usize, &CellFits<T, D, NB>)> {
         cloud.bins.occupied().iter().map(|&c| c as usize).zip(&self.cells)
     }
 
     #[inline(always)]
     fn emit<Q: Field<T>>(
         &self,
-        cloud: &Cloud<'_, T, D>,
-        cell: usize,
+        patch: &Patch<T, D>,
         coefficients: &[Q; NB],
         sink: &mut impl FnMut(&Point<T, D>, Q),
     ) {
-        let volume = cloud.grid.cell_volume();
-        let half = cloud.grid.cell_size() / T::lit(2.0);
-        let cell = cloud.grid.cell(cell);
-        let centre = cloud.grid.centre(&cell);
+        let volume = patch.volume();
+        let cell = patch.cell;
         for node in &self.rule {
             let mut value = Q::zero();
             // Highest function first: the mean, usually the largest part, is rounded last.
             for k in (0..NB).rev() {
                 value.add_scaled(node.psi[k], coefficients[k]);
             }
-            let position = centre + half.component_mul(&node.s);
+            let position = patch.position(&node.s);
             sink(&Point { cell, position }, value.scaled(volume * node.share));
         }
     }
 }
 
-/// Local coordinates of the particles of a cell.
+/// Local coordinates in `patch` of the particles of the cell with number `cell`.
 #[inline(always)]
 pub(super) fn local<'a, T: Scalar, const D: usize>(
     cloud: &Cloud<'a, T, D>,
     cell: usize,
+    patch: &Patch<T, D>,
 ) -> impl Iterator<Item = (usize, SVector<T, D>)> + Clone + 'a {
-    let centre = cloud.grid.centre(&cloud.grid.cell(cell));
-    let scale = cloud.grid.inverse_cell_size() * T::lit(2.0);
     let positions = cloud.positions;
+    let patch = *patch;
     cloud.bins.particles_in(cell).iter().map(move |&p| {
         let p = p as usize;
-        (p, (positions[p] - centre).component_mul(&scale))
+        (p, patch.local(&positions[p]))
     })
 }
 
@@ -203,37 +201,49 @@ pub(super) fn local<'a, T: Scalar, const D: usize>(
 fn samples<'a, T: Scalar, const D: usize, Q: Field<T>>(
     cloud: &Cloud<'a, T, D>,
     cell: usize,
+    patch: &Patch<T, D>,
     value: &'a impl Fn(usize) -> Q,
 ) -> impl Iterator<Item = (SVector<T, D>, T, Q)> + 'a {
-    local(cloud, cell).map(move |(p, s)| (s, T::one(), value(p)))
+    local(cloud, cell, patch).map(move |(p, s)| (s, T::one(), value(p)))
+}
+
+#[inline(always)]
+fn free<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
+    fits: &CellFits<T, D, NB>,
+    cloud: &Cloud<'_, T, D>,
+    cell: usize,
+    value: &impl Fn(usize) -> Q,
+) -> [Q; NB] {
+    let samples = samples(cloud, cell, &fits.patch, value);
+    fits.free.coefficients(samples, Q::zero())
 }
 
 #[inline(always)]
 fn conserved<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
-    fits: &CellFits<T, NB>,
+    fits: &CellFits<T, D, NB>,
     cloud: &Cloud<'_, T, D>,
     cell: usize,
-    volume: T,
     amount: &impl Fn(usize) -> Q,
 ) -> [Q; NB] {
     let mut mean = Q::zero();
     for &p in cloud.bins.particles_in(cell) {
         mean.add_scaled(T::one(), amount(p as usize));
     }
-    let mean = mean.scaled(T::one() / volume);
+    let mean = mean.scaled(T::one() / fits.patch.volume());
     let density = |p: usize| amount(p).scaled(T::one() / cloud.volumes[p]);
     fit_about_mean(fits, cloud, cell, &density, mean)
 }
 
 #[inline(always)]
 fn fit_about_mean<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
-    fits: &CellFits<T, NB>,
+    fits: &CellFits<T, D, NB>,
     cloud: &Cloud<'_, T, D>,
     cell: usize,
     value: &impl Fn(usize) -> Q,
     mean: Q,
 ) -> [Q; NB] {
-    let mut coefficients = fits.conserved.coefficients(samples(cloud, cell, value), mean);
+    let samples = samples(cloud, cell, &fits.patch, value);
+    let mut coefficients = fits.conserved.coefficients(samples, mean);
     coefficients[0] = mean;
     coefficients
 }
@@ -248,12 +258,17 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         self.cells.reserve(cloud.grid.cell_count());
         self.reduced = 0;
         for &cell in cloud.bins.occupied() {
-            let points = local(cloud, cell as usize).map(|(_, s)| s);
+            let patch = cloud.patch(cell as usize);
+            let points = local(cloud, cell as usize, &patch).map(|(_, s)| s);
             let free = CellFit::new(points.clone(), 0, self.tolerance);
             let conserved = CellFit::new(points, 1, self.tolerance);
             let full = free.functions() == NB && conserved.functions() + 1 == NB;
             self.reduced += usize::from(!full);
-            self.cells.push(CellFits { free, conserved });
+            self.cells.push(CellFits {
+                patch,
+                free,
+                conserved,
+            });
         }
     }
 
@@ -265,8 +280,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
         for (cell, fits) in self.each_cell(cloud) {
-            let coefficients = fits.free.coefficients(samples(cloud, cell, &value), Q::zero());
-            self.emit(cloud, cell, &coefficients, &mut sink);
+            let coefficients = free(fits, cloud, cell, &value);
+            self.emit(&fits.patch, &coefficients, &mut sink);
         }
     }
 
@@ -277,10 +292,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         amount: impl Fn(usize) -> Q,
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        let volume = cloud.grid.cell_volume();
         for (cell, fits) in self.each_cell(cloud) {
-            let coefficients = conserved(fits, cloud, cell, volume, &amount);
-            self.emit(cloud, cell, &coefficients, &mut sink);
+            let coefficients = conserved(fits, cloud, cell, &amount);
+            self.emit(&fits.patch, &coefficients, &mut sink);
         }
     }
 
@@ -289,6 +303,6 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
     }
 
     fn bytes(&self) -> usize {
-        self.cells.capacity() * size_of::<CellFits<T, NB>>()
+        self.cells.capacity() * size_of::<CellFits<T, D, NB>>()
     }
 }

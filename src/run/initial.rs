@@ -29,6 +29,7 @@ pub(super) fn initial(scene: &Scene, grid: &Grid<f64, 1>) -> Result<Initial, Run
                     particle,
                     face,
                     area: 1.0,
+                    reach: 0.5,
                 });
             }
         }

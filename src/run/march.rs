@@ -72,7 +72,7 @@ pub(super) fn march(
         let dt = schedule.size(step);
         let forcing = forcing(scene, schedule.time(step), dt)?;
         if let Err(source) = simulation.step(dt, &forcing) {
-            let critical = critical_step(scene).ok().flatten();
+            let critical = critical_step(scene).ok().flatten().map(|limit| limit.step);
             return Err(RunError::Stopped { source, dt, critical });
         }
         let done = step + 1;

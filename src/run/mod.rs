@@ -26,7 +26,7 @@ use schedule::Schedule;
 use crate::output::Folder;
 use crate::particles::Particles;
 use crate::scene::{ParticleOutput, Scene};
-use crate::stepper::Simulation;
+use crate::stepper::{CriticalStep, Simulation};
 
 /// How far a run has come.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +89,7 @@ pub fn run(
 ///
 /// # Errors
 /// If the scene cannot be set up.
-pub fn critical_step(scene: &Scene) -> Result<Option<f64>, RunError> {
+pub fn critical_step(scene: &Scene) -> Result<Option<CriticalStep<f64>>, RunError> {
     let simulation = build(scene)?;
     // Only which faces are held matters, not how they move.
     Ok(simulation.critical_step(&forcing(scene, 0.0, 1.0)?))

@@ -21,6 +21,7 @@ impl Schedule {
             StepSize::Auto { safety } => {
                 let held = forcing(scene, 0.0, 1.0)?;
                 let critical = simulation.critical_step(&held).ok_or(RunError::NoCriticalStep)?;
+                let critical = critical.step;
                 let steps = (end / (safety * critical)).ceil().max(1.0);
                 Ok(Self {
                     steps: steps as usize,

@@ -1,7 +1,7 @@
 //! Stage 2: accelerations of the DOFs.
 
 use super::matrix::Unknown;
-use super::{FaceCondition, Forcing, Stepper};
+use super::{FaceCondition, Forcing, PoreCondition, Stepper};
 use crate::basis::BasisFamily;
 use crate::grid::Face;
 use crate::law::ConstitutiveLaw;
@@ -32,7 +32,7 @@ where
             }
         }
         let force = &mut self.dofs.force;
-        for_each_held(&self.face_dofs, forcing, |dof, axis, _, acceleration| {
+        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, acceleration| {
             force[dof][axis] = acceleration;
         });
     }
@@ -43,35 +43,58 @@ where
             *force += forcing.body_force * mass;
         }
         let pick = |_, acceleration| acceleration;
-        self.dofs.solve(
-            Unknown::Acceleration,
-            self.velocity_mass,
-            &self.face_dofs,
-            forcing,
-            pick,
-        );
+        let walls = Walls::of_solid(&self.face_dofs, forcing);
+        self.dofs
+            .solve(Unknown::Acceleration, self.velocity_mass, &walls, true, pick);
     }
 }
 
-/// Calls `f(dof, axis, velocity, acceleration)` for every held component of the DOFs on held faces. Where faces
-/// meet, the later one has the last word.
-pub(super) fn for_each_held<T: Scalar, const D: usize>(
-    face_dofs: &[Vec<u32>],
-    forcing: &Forcing<T, D>,
-    mut f: impl FnMut(usize, usize, T, T),
-) {
-    for (face, dofs) in Face::all::<D>().zip(face_dofs) {
-        let FaceCondition::Held {
-            held,
-            velocity,
-            acceleration,
-        } = forcing.face(face)
-        else {
-            continue;
-        };
-        for &dof in dofs {
-            for axis in (0..D).filter(|&axis| held[axis]) {
-                f(dof as usize, axis, velocity[axis], acceleration[axis]);
+/// The held faces that one of the phases meets.
+#[derive(Clone, Copy)]
+pub(super) struct Walls<'a, T, const D: usize> {
+    face_dofs: &'a [Vec<u32>],
+    forcing: &'a Forcing<T, D>,
+    /// The liquid does not feel a face that it passes.
+    liquid: bool,
+}
+
+impl<'a, T: Scalar, const D: usize> Walls<'a, T, D> {
+    pub(super) fn of_solid(face_dofs: &'a [Vec<u32>], forcing: &'a Forcing<T, D>) -> Self {
+        Self {
+            face_dofs,
+            forcing,
+            liquid: false,
+        }
+    }
+
+    pub(super) fn of_liquid(face_dofs: &'a [Vec<u32>], forcing: &'a Forcing<T, D>) -> Self {
+        Self {
+            face_dofs,
+            forcing,
+            liquid: true,
+        }
+    }
+
+    /// Calls `f(dof, axis, velocity, acceleration)` for every held component of the DOFs on held faces. Where faces
+    /// meet, the later one has the last word.
+    #[inline(always)]
+    pub(super) fn for_each_held(&self, mut f: impl FnMut(usize, usize, T, T)) {
+        for (face, dofs) in Face::all::<D>().zip(self.face_dofs) {
+            let FaceCondition::Held {
+                held,
+                velocity,
+                acceleration,
+            } = self.forcing.face(face)
+            else {
+                continue;
+            };
+            if self.liquid && matches!(self.forcing.pores(face), PoreCondition::Pressure(_)) {
+                continue;
+            }
+            for &dof in dofs {
+                for axis in (0..D).filter(|&axis| held[axis]) {
+                    f(dof as usize, axis, velocity[axis], acceleration[axis]);
+                }
             }
         }
     }

@@ -6,6 +6,7 @@ use super::Stepper;
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::law::ConstitutiveLaw;
+use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -21,7 +22,6 @@ where
 {
     pub(super) fn advance(&mut self, dt: T) -> Result<(), StepError> {
         let velocity = &self.dofs.velocity;
-        let large_strain = self.law.large_strain();
         let particles = &mut self.particles;
         for p in 0..particles.position.len() {
             let mut v = SVector::zeros();
@@ -32,27 +32,35 @@ where
                 gradient += velocity[i] * grad_phi.transpose();
             });
             let increment = gradient * dt;
-            particles.position[p] += v * dt;
-            particles.displacement[p] += v * dt;
-            self.law
-                .update(&increment, &mut particles.stress[p], &mut particles.state[p]);
             if P::COUPLED {
                 self.phase.update(&increment, &mut particles.phase[p]);
             }
-            if large_strain {
-                let volume = particles.volume[p] * determinant(&(SMatrix::identity() + increment));
-                // Also refuses a volume that is not a number.
-                if !(volume > T::zero() && volume.is_finite()) {
-                    return Err(StepError::Invalid {
-                        step: self.steps,
-                        particle: p,
-                        name: "volume",
-                        value: volume.primal(),
-                    });
-                }
-                particles.volume[p] = volume;
-            }
+            advance_solid(&self.law, particles, p, &(v * dt), &increment)
+                .map_err(|volume| StepError::volume(self.steps, p, volume))?;
         }
         Ok(())
     }
+}
+
+/// Moves particle `p` by `path` and deforms it by `increment`; the volume is the error if it is no longer a positive number.
+#[inline(always)]
+pub(super) fn advance_solid<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>, Q>(
+    law: &L,
+    particles: &mut Particles<T, D, L::State, Q>,
+    p: usize,
+    path: &SVector<T, D>,
+    increment: &SMatrix<T, D, D>,
+) -> Result<(), T> {
+    particles.position[p] += path;
+    particles.displacement[p] += path;
+    law.update(increment, &mut particles.stress[p], &mut particles.state[p]);
+    if law.large_strain() {
+        let volume = particles.volume[p] * determinant(&(SMatrix::identity() + increment));
+        // Also refuses a volume that is not a number.
+        if !(volume > T::zero() && volume.is_finite()) {
+            return Err(volume);
+        }
+        particles.volume[p] = volume;
+    }
+    Ok(())
 }

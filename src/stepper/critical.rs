@@ -3,13 +3,33 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::forces::internal_force;
+use super::liquid::Coupled;
 use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::grid::Face;
 use crate::law::ConstitutiveLaw;
-use crate::phase::Phase;
+use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::tensor::symmetric;
+
+/// What limits a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Mechanism {
+    /// A wave that crosses a cell.
+    Wave,
+    /// The drag between solid and liquid, taken explicitly.
+    Drag,
+}
+
+/// The largest stable step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CriticalStep<T> {
+    /// Its size (s).
+    pub step: T,
+    /// What limits it.
+    pub mechanism: Mechanism,
+}
 
 /// Strain by which the law's tangent is probed.
 const PROBE_STRAIN: f64 = 1e-3;
@@ -31,8 +51,47 @@ where
     /// to `2 / sqrt(lambda)`, `lambda` the largest eigenvalue of `G`, found here by power iteration on the
     /// scheme's own stages, so it holds for every basis, reconstruction, mass, law and layout. `None` if
     /// nothing resists a motion (no stiffness).
-    pub fn critical_step(&self, forcing: &Forcing<T, D>) -> Option<T> {
+    ///
+    /// With a liquid that flows the same iteration, with unit density and modulus, gives what grid, basis, reconstruction and
+    /// layout contribute, and the two-phase problem is solved with it for every particle's material; the least step counts.
+    pub fn critical_step(&self, forcing: &Forcing<T, D>) -> Option<CriticalStep<T>> {
         let mut probe = self.clone();
+        if P::FLOWS {
+            probe.particles.mass.clone_from(&self.particles.volume);
+            let geometry = probe.largest_eigenvalue(forcing)?;
+            let steps = (0..self.particles.len()).map(|p| self.coupled(p).critical_step(geometry));
+            return steps
+                .flatten()
+                .min_by(|a, b| a.step.primal().total_cmp(&b.step.primal()));
+        }
+        let eigenvalue = probe.largest_eigenvalue(forcing)?;
+        Some(CriticalStep {
+            step: T::lit(2.0) / eigenvalue.sqrt(),
+            mechanism: Mechanism::Wave,
+        })
+    }
+
+    /// The material at particle `p`.
+    fn coupled(&self, p: usize) -> Coupled<T> {
+        let (particles, phase) = (&self.particles, &self.phase);
+        let (mass, volume) = (particles.mass[p], particles.volume[p]);
+        let density = mass / volume;
+        let speed = self
+            .law
+            .wave_speed(density, &particles.stress[p], &particles.state[p]);
+        Coupled {
+            mass: [phase.liquid_mass(volume) / volume, density],
+            drag: phase.porosity() * phase.drag(mass, volume) / volume,
+            liquid_stiffness: phase.liquid_stiffness(),
+            porosity: phase.porosity(),
+            modulus: speed * speed * density,
+            implicit: phase.drag_treatment() == Drag::Implicit,
+        }
+    }
+
+    /// Largest eigenvalue of the map; the stepper is used up.
+    fn largest_eigenvalue(mut self, forcing: &Forcing<T, D>) -> Option<T> {
+        let probe = &mut self;
         probe.prepare();
         probe.lump_mass();
         let rest = at_rest(forcing);
@@ -49,7 +108,7 @@ where
             }
             before = eigenvalue;
         }
-        (before > T::zero()).then(|| T::lit(2.0) / before.sqrt())
+        (before > T::zero()).then_some(before)
     }
 
     /// Velocity that strains a cell by [`PROBE_STRAIN`] in one second.
@@ -83,7 +142,7 @@ where
         self.map_momentum();
         self.divide_by_mass(rest);
         let rates: Vec<_> = (0..self.particles.len()).map(|p| self.stress_rate(p)).collect();
-        let cloud = cloud(&self.grid, &self.bins, &self.particles);
+        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         let (basis, force) = (&self.basis, &mut self.dofs.force);
         internal_force(basis, &mut self.reconstruction, &cloud, |p| rates[p], force);
         self.accelerate(rest);
@@ -101,6 +160,9 @@ where
         self.basis.for_each(&self.grid, cell, x, |i, _, grad_phi| {
             gradient += self.dofs.velocity[i] * grad_phi.transpose();
         });
+        if P::FLOWS {
+            return symmetric(&gradient);
+        }
         let (mut stress, mut state) = (particles.stress[p], particles.state[p]);
         self.law.update(&gradient, &mut stress, &mut state);
         if !P::COUPLED {

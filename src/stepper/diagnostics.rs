@@ -27,6 +27,8 @@ pub struct Conservation<T> {
 pub struct Diagnostics<T> {
     /// Conservation by the mapping of mass and momentum.
     pub conservation: Conservation<T>,
+    /// The same of the liquid, where one flows.
+    pub liquid_conservation: Option<Conservation<T>>,
     /// How often a particle changed its cell.
     pub grid_crossings: usize,
     /// Most cells in one step that could not be fitted with the full set of functions.
@@ -52,13 +54,15 @@ impl<T: Scalar> Energy<T> {
 }
 
 impl<T: Scalar> Diagnostics<T> {
-    pub(super) fn new(total_mass: T) -> Self {
+    pub(super) fn new(total_mass: T, flows: bool) -> Self {
+        let none = Conservation {
+            mass: T::zero(),
+            momentum: T::zero(),
+            momentum_scaled: T::zero(),
+        };
         Self {
-            conservation: Conservation {
-                mass: T::zero(),
-                momentum: T::zero(),
-                momentum_scaled: T::zero(),
-            },
+            conservation: none,
+            liquid_conservation: flows.then_some(none),
             grid_crossings: 0,
             reduced_cells: 0,
             total_mass,
@@ -75,23 +79,39 @@ impl<T: Scalar> Diagnostics<T> {
         particles: &Particles<T, D, S, P>,
         mapped: MassMomentum<T, D>,
     ) {
+        let parts = particles
+            .mass
+            .iter()
+            .zip(&particles.velocity)
+            .map(|(&m, v)| v * m);
+        self.conservation.record(self.total_mass, parts, mapped);
+    }
+}
+
+impl<T: Scalar> Conservation<T> {
+    /// Compares the mapped totals with the mass and the momenta of the particles.
+    #[inline(always)]
+    fn record<const D: usize>(
+        &mut self,
+        total_mass: T,
+        momenta: impl Iterator<Item = SVector<T, D>>,
+        mapped: MassMomentum<T, D>,
+    ) {
         let mut momentum = SVector::<T, D>::zeros();
         let mut scale = T::zero();
-        for (&m, v) in particles.mass.iter().zip(&particles.velocity) {
-            let part = v * m;
+        for part in momenta {
             momentum += part;
             scale += if D == 1 { part[0].abs() } else { part.norm() };
         }
-        let errors = &mut self.conservation;
-        let mass = (mapped.mass - self.total_mass).abs() / self.total_mass;
-        errors.mass = errors.mass.max(mass);
+        let mass = (mapped.mass - total_mass).abs() / total_mass;
+        self.mass = self.mass.max(mass);
         let difference = (mapped.momentum - momentum).norm();
         let total = momentum.norm();
         if total > T::zero() {
-            errors.momentum = errors.momentum.max(difference / total);
+            self.momentum = self.momentum.max(difference / total);
         }
         if scale > T::zero() {
-            errors.momentum_scaled = errors.momentum_scaled.max(difference / scale);
+            self.momentum_scaled = self.momentum_scaled.max(difference / scale);
         }
     }
 }
@@ -104,7 +124,20 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
-    /// Kinetic and strain energy of the particles as they are.
+    /// Compares the mapped totals of both phases with those of the particles.
+    pub(super) fn record_both(&mut self, [solid, liquid]: [MassMomentum<T, D>; 2]) {
+        let (particles, phase) = (&self.particles, &self.phase);
+        self.diagnostics.record(particles, solid);
+        let Some(errors) = &mut self.diagnostics.liquid_conservation else {
+            return;
+        };
+        let mass = |p: usize| phase.liquid_mass(particles.volume[p]);
+        let total = (0..particles.len()).fold(T::zero(), |sum, p| sum + mass(p));
+        let momenta = (0..particles.len()).map(|p| phase.liquid(&particles.phase[p]).velocity * mass(p));
+        errors.record(total, momenta, liquid);
+    }
+
+    /// Kinetic and strain energy of the particles as they are, the liquid's included.
     pub fn energy(&self) -> Energy<T> {
         let particles = &self.particles;
         let half = T::one() / T::lit(2.0);
@@ -116,6 +149,12 @@ where
             energy.kinetic += particles.velocity[p].norm_squared() * particles.mass[p] * half;
             let density = self.law.energy_density(&particles.stress[p], &particles.state[p]);
             energy.strain += density * particles.volume[p];
+            if P::FLOWS {
+                let (data, volume) = (&particles.phase[p], particles.volume[p]);
+                let speed = self.phase.liquid(data).velocity.norm_squared();
+                energy.kinetic += speed * self.phase.liquid_mass(volume) * half;
+                energy.strain += self.phase.liquid_energy_density(data) * volume;
+            }
         }
         energy
     }

@@ -18,8 +18,7 @@ where
     P: Phase<T, D>,
 {
     pub(super) fn assemble_forces(&mut self, forcing: &Forcing<T, D>) {
-        self.lump_mass();
-        let cloud = cloud(&self.grid, &self.bins, &self.particles);
+        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         let effective = &self.particles.stress;
         let (basis, force) = (&self.basis, &mut self.dofs.force);
         // Two closures rather than one with a branch: what a closure holds costs instructions even where it is not used.
@@ -37,6 +36,9 @@ where
     pub(super) fn lump_mass(&mut self) {
         if R::PARTICLE_MATRIX {
             self.assemble_particle_matrix();
+        }
+        if P::FLOWS {
+            return self.lump_both_masses();
         }
         let mass = &mut self.dofs.mass;
         mass.fill(T::zero());
@@ -61,20 +63,18 @@ where
         }
     }
 
-    fn add_tractions(&mut self, forcing: &Forcing<T, D>) {
-        let force = &mut self.dofs.force;
-        for point in &self.surface {
+    pub(super) fn add_tractions(&mut self, forcing: &Forcing<T, D>) {
+        for k in 0..self.surface.len() {
+            let point = &self.surface[k];
             let FaceCondition::Traction(traction) = forcing.face(point.face) else {
                 continue;
             };
-            let p = point.particle;
-            let (position, volume) = (&self.particles.position[p], self.particles.volume[p]);
-            let x = point.position(&self.grid, position, volume);
+            let x = self.surface_position(point);
+            let cell = self.bins.cell_of(point.particle);
             let load = traction * point.area;
-            if let Some(cell) = self.grid.locate(&x) {
-                self.basis
-                    .for_each(&self.grid, &cell, &x, |i, phi, _| force[i] += load * phi);
-            }
+            let force = &mut self.dofs.force;
+            self.basis
+                .for_each(&self.grid, cell, &x, |i, phi, _| force[i] += load * phi);
         }
     }
 }

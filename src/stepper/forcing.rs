@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use crate::error::SetupError;
-use crate::grid::{Face, Side};
+use crate::grid::{Cell, Face, Grid, Side};
 use crate::scalar::Scalar;
 
 /// What holds at a face during one step.
@@ -49,12 +49,23 @@ impl<T: Scalar, const D: usize> FaceCondition<T, D> {
     }
 }
 
+/// What the liquid in the pores meets at a face, for phases with a liquid that flows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum PoreCondition<T> {
+    /// It does not pass: at a held face it moves as the face does, at a body's surface as the solid there.
+    #[default]
+    Sealed,
+    /// It passes freely; this is the pressure outside (Pa, tension positive), 0 where it drains into the open.
+    Pressure(T),
+}
+
 /// Loads and boundary values of one step, as plain numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forcing<T, const D: usize> {
     /// Force per mass (N/kg) at the step's start.
     pub body_force: SVector<T, D>,
     faces: [[FaceCondition<T, D>; 2]; D],
+    pores: [[PoreCondition<T>; 2]; D],
 }
 
 impl<T: Scalar, const D: usize> Forcing<T, D> {
@@ -63,6 +74,7 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
         Self {
             body_force: SVector::zeros(),
             faces: [[FaceCondition::Free; 2]; D],
+            pores: [[PoreCondition::Sealed; 2]; D],
         }
     }
 
@@ -80,6 +92,27 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
         self
     }
 
+    /// With a condition for the liquid at a face. A face of an axis that does not exist is left out.
+    #[must_use]
+    pub fn with_pores(mut self, face: Face, condition: PoreCondition<T>) -> Self {
+        self.set_pores(face, condition);
+        self
+    }
+
+    /// Sets the condition for the liquid at a face. A face of an axis that does not exist is left out.
+    pub fn set_pores(&mut self, face: Face, condition: PoreCondition<T>) {
+        if let Some(sides) = self.pores.get_mut(face.axis) {
+            sides[face.side as usize] = condition;
+        }
+    }
+
+    /// The condition for the liquid at a face, [`PoreCondition::Sealed`] for an axis that does not exist.
+    pub fn pores(&self, face: Face) -> PoreCondition<T> {
+        self.pores
+            .get(face.axis)
+            .map_or(PoreCondition::Sealed, |sides| sides[face.side as usize])
+    }
+
     /// Sets the condition at a face. A face of an axis that does not exist is left out.
     pub fn set_face(&mut self, face: Face, condition: FaceCondition<T, D>) {
         if let Some(sides) = self.faces.get_mut(face.axis) {
@@ -95,9 +128,10 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
     }
 }
 
-/// A particle at a body's surface: it passes tractions on and moves with the material.
+/// A particle at a body's surface: it passes tractions and pore pressures on and moves with the material.
 ///
-/// The surface lies half the particle's current length, `volume / (2 area)`, beyond its position.
+/// The surface lies `reach` of the particle's current length `volume / area` beyond its position, but within the particle's
+/// cell: beyond it no mass would feel a load. In one dimension it also cuts the cell that a fit covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint<T> {
     /// Index of the particle.
@@ -106,6 +140,8 @@ pub struct SurfacePoint<T> {
     pub face: Face,
     /// Area that the particle holds (1-D: 1, 2-D: m, 3-D: m2), constant.
     pub area: T,
+    /// Distance of the surface from the particle in lengths of the particle: 1/2 in a regular layout.
+    pub reach: T,
 }
 
 impl<T: Scalar> SurfacePoint<T> {
@@ -115,6 +151,7 @@ impl<T: Scalar> SurfacePoint<T> {
             particle: self.particle,
             face: self.face,
             area: U::lit(self.area.primal()),
+            reach: U::lit(self.reach.primal()),
         }
     }
 
@@ -132,33 +169,51 @@ impl<T: Scalar> SurfacePoint<T> {
             let value = self.area.primal();
             return Err(refuse("surface area", value, "it must be positive and finite"));
         }
+        if !self.reach.is_finite() || self.reach < T::zero() {
+            let value = self.reach.primal();
+            return Err(refuse(
+                "surface reach",
+                value,
+                "it must be finite and not negative",
+            ));
+        }
         Ok(())
     }
 
-    /// Where the surface is, given the particle's position and volume (not beyond the grid).
+    /// Where the surface is, given the particle's cell, position and volume.
     pub(super) fn position<const D: usize>(
         &self,
-        grid: &crate::grid::Grid<T, D>,
+        grid: &Grid<T, D>,
+        cell: &Cell<D>,
         position: &SVector<T, D>,
         volume: T,
     ) -> SVector<T, D> {
-        let reach = volume / (self.area + self.area);
+        let axis = self.face.axis;
+        let reach = volume / self.area * self.reach;
+        let edge = |k: u32| grid.edge(axis, k as usize);
         let mut x = *position;
+        x[axis] = match self.face.side {
+            Side::Min => (x[axis] - reach).max(edge(cell[axis])),
+            Side::Max => (x[axis] + reach).min(edge(cell[axis] + 1)),
+        };
+        x
+    }
+
+    /// The outward normal's component along the face's axis: -1 or 1.
+    pub(super) fn outward(&self) -> T {
         match self.face.side {
-            Side::Min => x[self.face.axis] -= reach,
-            Side::Max => x[self.face.axis] += reach,
+            Side::Min => -T::one(),
+            Side::Max => T::one(),
         }
-        x.zip_zip_map(grid.min(), grid.max(), |x, low, high| x.max(low).min(high))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::Grid;
     use nalgebra::vector;
 
-    /// Half the particle's current length beyond its position, on the side it looks to, and never beyond the grid.
+    /// Half the particle's current length beyond its position, on the side it looks to, and never beyond its cell.
     #[test]
     fn a_surface_lies_half_a_particle_beyond_it_and_follows_its_length() {
         let grid = Grid::new(vector![0.0, 0.0], vector![1.0, 1.0], [4, 4]).unwrap();
@@ -167,12 +222,14 @@ mod tests {
                 particle: 0,
                 face: Face { axis: 1, side },
                 area: 0.5,
+                reach: 0.5,
             };
-            point.position(&grid, &vector![0.5, 0.75], volume)
+            point.position(&grid, &[2, 2], &vector![0.5, 0.625], volume)
         };
-        assert_eq!(at(Side::Max, 0.1), vector![0.5, 0.75 + 0.1]);
-        assert_eq!(at(Side::Min, 0.2), vector![0.5, 0.75 - 0.2]);
-        assert_eq!(at(Side::Max, 0.4), vector![0.5, 1.0]);
+        assert_eq!(at(Side::Max, 0.1), vector![0.5, 0.625 + 0.1]);
+        assert_eq!(at(Side::Min, 0.1), vector![0.5, 0.625 - 0.1]);
+        assert_eq!(at(Side::Max, 0.4), vector![0.5, 0.75]);
+        assert_eq!(at(Side::Min, 0.4), vector![0.5, 0.5]);
     }
 
     #[test]
@@ -184,6 +241,7 @@ mod tests {
                 side: Side::Min,
             },
             area: 1.0,
+            reach: 0.5,
         };
         assert!(good.validate::<1>(2).is_ok());
         assert!(good.validate::<1>(1).is_err());

@@ -1,7 +1,7 @@
 //! Solving with the consistent mass matrix.
 
-use super::acceleration::for_each_held;
-use super::{Dofs, Forcing};
+use super::Dofs;
+use super::acceleration::Walls;
 use crate::mass::VelocityMass;
 use crate::scalar::Scalar;
 
@@ -16,13 +16,13 @@ pub(super) enum Unknown {
 
 impl<T: Scalar, const D: usize> Dofs<T, D> {
     /// `M x = right`. The held DOFs are eliminated if they are constraints; they may differ from axis to axis. `pick` says
-    /// which of their told velocity and acceleration counts.
+    /// which of their told velocity and acceleration counts. Without `fresh` the matrix is the one of the last call.
     pub(super) fn solve(
         &mut self,
         unknown: Unknown,
         mass: VelocityMass,
-        face_dofs: &[Vec<u32>],
-        forcing: &Forcing<T, D>,
+        walls: &Walls<'_, T, D>,
+        fresh: bool,
         pick: impl Fn(T, T) -> T,
     ) {
         let right = match unknown {
@@ -31,14 +31,16 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
         };
         let factor = &mut self.factor;
         if mass != VelocityMass::Constrained {
-            factor.copy_from(&self.matrix);
-            factor.factorise();
+            if fresh {
+                factor.copy_from(&self.matrix);
+                factor.factorise();
+            }
             (0..D).for_each(|axis| factor.solve(right, axis));
             return;
         }
         for axis in 0..D {
             factor.copy_from(&self.matrix);
-            for_each_held(face_dofs, forcing, |dof, held, velocity, acceleration| {
+            walls.for_each_held(|dof, held, velocity, acceleration| {
                 if held == axis {
                     factor.prescribe(dof, axis, pick(velocity, acceleration), right);
                 }

@@ -19,12 +19,14 @@ mod critical;
 mod diagnostics;
 mod forces;
 mod forcing;
+mod liquid;
 mod matrix;
 mod simulation;
 mod velocity;
 
+pub use critical::{CriticalStep, Mechanism};
 pub use diagnostics::{Conservation, Diagnostics, Energy};
-pub use forcing::{FaceCondition, Forcing, SurfacePoint};
+pub use forcing::{FaceCondition, Forcing, PoreCondition, SurfacePoint};
 pub use simulation::Simulation;
 
 use nalgebra::SVector;
@@ -36,7 +38,7 @@ use crate::law::ConstitutiveLaw;
 use crate::mass::{Banded, VelocityMass};
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, Reconstruction};
+use crate::reconstruction::{Cloud, Cut, Reconstruction};
 use crate::scalar::Scalar;
 
 /// All that a [`Stepper`] is made of.
@@ -60,7 +62,8 @@ where
     pub velocity_mass: VelocityMass,
     /// Particles in their initial state.
     pub particles: Particles<T, D, L::State, P::Particle>,
-    /// Particles that carry tractions.
+    /// Particles at the surfaces that carry tractions or, with a liquid in the pores, pressures: there, every surface of
+    /// a body that is not held.
     pub surface: Vec<SurfacePoint<T>>,
 }
 
@@ -78,7 +81,14 @@ where
     particles: Particles<T, D, L::State, P::Particle>,
     surface: Vec<SurfacePoint<T>>,
     bins: Bins<D>,
+    /// Where the surfaces cut cells.
+    cuts: Vec<Cut<T>>,
+    /// The solid's DOFs; in one phase the only ones.
     dofs: Dofs<T, D>,
+    /// The liquid's, empty where none flows.
+    liquid: Dofs<T, D>,
+    /// Drag of the DOFs (kg/s in 3-D), empty where no liquid flows.
+    drag: Vec<T>,
     /// DOFs of each face, in the order of [`Face::all`].
     face_dofs: Vec<Vec<u32>>,
     velocity_mass: VelocityMass,
@@ -121,6 +131,11 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             matrix,
         }
     }
+
+    fn bytes(&self) -> usize {
+        size_of::<T>() * (self.mass.len() + self.lumped.len() + 2 * self.matrix.len())
+            + 2 * size_of::<SVector<T, D>>() * self.force.len()
+    }
 }
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
@@ -131,10 +146,11 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
-    /// Checks the particles and allocates all that steps will need.
+    /// Checks particles and phase and allocates all that steps will need.
     ///
     /// # Errors
-    /// If particle data are inconsistent or not finite, or a particle is outside the grid.
+    /// If particle data are inconsistent or not finite, a particle is outside the grid, a constant of the phase makes no
+    /// sense, or the reconstruction is of one phase only ([`Reconstruction::PARTICLE_MATRIX`]).
     pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
         let Setup {
             grid,
@@ -147,6 +163,10 @@ where
             surface,
         } = setup;
         particles.validate()?;
+        phase.validate()?;
+        if P::FLOWS && R::PARTICLE_MATRIX {
+            return Err(SetupError::OnePhaseOnly);
+        }
         for point in &surface {
             point.validate::<D>(particles.len())?;
         }
@@ -161,7 +181,10 @@ where
             false => velocity_mass,
         };
         let own_mass = (!R::AMOUNTS_AT_PARTICLES || R::PARTICLE_MATRIX).then_some(velocity_mass);
-        let dofs = Dofs::new(basis.dof_count(&grid), basis.half_band(&grid), own_mass);
+        let (count, half_band) = (basis.dof_count(&grid), basis.half_band(&grid));
+        let dofs = Dofs::new(count, half_band, own_mass);
+        let liquid_count = if P::FLOWS { count } else { 0 };
+        let liquid = Dofs::new(liquid_count, half_band, own_mass);
         let face_dofs = Face::all::<D>()
             .map(|face| {
                 let mut list = Vec::new();
@@ -169,6 +192,7 @@ where
                 list
             })
             .collect();
+        let surface_count = surface.len();
         let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
         Ok(Self {
             grid,
@@ -179,12 +203,15 @@ where
             particles,
             surface,
             bins,
+            cuts: Vec::with_capacity(surface_count),
             dofs,
+            liquid,
+            drag: vec![T::zero(); liquid_count],
             face_dofs,
             velocity_mass,
             time: T::zero(),
             steps: 0,
-            diagnostics: Diagnostics::new(mass),
+            diagnostics: Diagnostics::new(mass, P::FLOWS),
         })
     }
 
@@ -198,14 +225,27 @@ where
             return Err(StepError::StepSize { value: dt.primal() });
         }
         self.prepare();
-        self.assemble_forces(forcing);
-        self.accelerate(forcing);
-        self.update_particle_velocities(dt);
-        self.relax();
-        self.map_velocities(forcing);
+        self.lump_mass();
+        if P::FLOWS {
+            self.map_both_before(forcing);
+            self.assemble_both_forces(forcing);
+            self.accelerate_both(dt, forcing);
+            self.update_both_velocities(dt);
+            self.map_both_after(forcing);
+        } else {
+            self.assemble_forces(forcing);
+            self.accelerate(forcing);
+            self.update_particle_velocities(dt);
+            self.relax();
+            self.map_velocities(forcing);
+        }
         self.steps += 1;
         self.time += dt;
-        self.advance(dt)?;
+        if P::FLOWS {
+            self.advance_both(dt)?;
+        } else {
+            self.advance(dt)?;
+        }
         self.relocate()
     }
 
@@ -213,8 +253,9 @@ where
     fn prepare(&mut self) {
         if !(R::FIELDS_AT_PARTICLES && R::AMOUNTS_AT_PARTICLES) {
             self.bins.list(&self.grid);
+            self.cut_cells();
         }
-        let cloud = cloud(&self.grid, &self.bins, &self.particles);
+        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         self.reconstruction.prepare(&cloud);
         let reduced = self.reconstruction.reduced_cells();
         self.diagnostics.record_reduced(reduced);
@@ -232,6 +273,7 @@ where
             bins: &self.bins,
             positions: &particles.position,
             volumes: &particles.volume,
+            cuts: &self.cuts,
         };
         // The stress of a law that remembers follows from its state, or is bound to it: it must not be moved alone.
         if size_of::<L::State>() == 0 {
@@ -239,6 +281,28 @@ where
         }
         self.reconstruction
             .relax(&cloud, Some(&particles.mass), &mut particles.velocity);
+    }
+
+    /// Finds where surfaces cut cells, in one dimension.
+    fn cut_cells(&mut self) {
+        self.cuts.clear();
+        if D > 1 {
+            return;
+        }
+        for point in &self.surface {
+            let cell = self.bins.cell_of(point.particle);
+            self.cuts.push(Cut {
+                cell: cell[0],
+                side: point.face.side,
+                position: self.surface_position(point)[0],
+            });
+        }
+    }
+
+    fn surface_position(&self, point: &SurfacePoint<T>) -> SVector<T, D> {
+        let p = point.particle;
+        let (x, volume) = (&self.particles.position[p], self.particles.volume[p]);
+        point.position(&self.grid, self.bins.cell_of(p), x, volume)
     }
 
     /// Looks the cells of the moved particles up.
@@ -312,10 +376,10 @@ where
     /// Bytes in use for each particle: its data, its place in the bins, and its share of the reconstruction's
     /// and the DOFs' arrays.
     pub fn bytes_per_particle(&self) -> f64 {
-        let dofs = &self.dofs;
         let shared = self.reconstruction.bytes()
-            + size_of::<T>() * (dofs.mass.len() + dofs.lumped.len() + 2 * dofs.matrix.len())
-            + 2 * size_of::<SVector<T, D>>() * dofs.force.len();
+            + self.dofs.bytes()
+            + self.liquid.bytes()
+            + size_of::<T>() * self.drag.len();
         let own =
             Particles::<T, D, L::State, P::Particle>::bytes_per_particle() + Bins::<D>::bytes_per_particle();
         own as f64 + shared as f64 / self.particles.len() as f64
@@ -327,12 +391,14 @@ fn cloud<'a, T: Scalar, const D: usize, S, P>(
     grid: &'a Grid<T, D>,
     bins: &'a Bins<D>,
     particles: &'a Particles<T, D, S, P>,
+    cuts: &'a [Cut<T>],
 ) -> Cloud<'a, T, D> {
     Cloud {
         grid,
         bins,
         positions: &particles.position,
         volumes: &particles.volume,
+        cuts,
     }
 }
 

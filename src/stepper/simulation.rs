@@ -2,13 +2,15 @@
 
 use nalgebra::SVector;
 
-use super::{Conservation, Diagnostics, Energy, FaceCondition, Forcing, Stepper};
+use super::{
+    Conservation, CriticalStep, Diagnostics, Energy, FaceCondition, Forcing, PoreCondition, Stepper,
+};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::grid::Face;
 use crate::law::ConstitutiveLaw;
 use crate::particles::Particles;
-use crate::phase::Phase;
+use crate::phase::{Phase, PoreLiquid};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 
@@ -23,6 +25,9 @@ pub trait Simulation<const D: usize> {
     /// A copy of the particles, without the law's and the second phase's data.
     fn particles(&self) -> Particles<f64, D>;
 
+    /// The liquid of every particle; empty where none flows.
+    fn liquid(&self) -> Vec<PoreLiquid<f64, D>>;
+
     /// See [`Stepper::diagnostics`].
     fn diagnostics(&self) -> Diagnostics<f64>;
 
@@ -30,7 +35,7 @@ pub trait Simulation<const D: usize> {
     fn energy(&self) -> Energy<f64>;
 
     /// See [`Stepper::critical_step`].
-    fn critical_step(&self, forcing: &Forcing<f64, D>) -> Option<f64>;
+    fn critical_step(&self, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>>;
 
     /// Number of particles.
     fn particle_count(&self) -> usize;
@@ -58,19 +63,32 @@ where
         self.particles.cast()
     }
 
+    fn liquid(&self) -> Vec<PoreLiquid<f64, D>> {
+        if !P::FLOWS {
+            return Vec::new();
+        }
+        let data = self.particles.phase.iter();
+        data.map(|data| {
+            let PoreLiquid { velocity, pressure } = self.phase.liquid(data);
+            PoreLiquid {
+                velocity: velocity.map(T::primal),
+                pressure: pressure.primal(),
+            }
+        })
+        .collect()
+    }
+
     fn diagnostics(&self) -> Diagnostics<f64> {
         let Diagnostics {
             conservation,
+            liquid_conservation,
             grid_crossings,
             reduced_cells,
             total_mass,
         } = self.diagnostics;
         Diagnostics {
-            conservation: Conservation {
-                mass: conservation.mass.primal(),
-                momentum: conservation.momentum.primal(),
-                momentum_scaled: conservation.momentum_scaled.primal(),
-            },
+            conservation: cast_conservation(&conservation),
+            liquid_conservation: liquid_conservation.as_ref().map(cast_conservation),
             grid_crossings,
             reduced_cells,
             total_mass: total_mass.primal(),
@@ -85,8 +103,10 @@ where
         }
     }
 
-    fn critical_step(&self, forcing: &Forcing<f64, D>) -> Option<f64> {
-        self.critical_step(&cast_forcing(forcing)).map(T::primal)
+    fn critical_step(&self, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>> {
+        let CriticalStep { step, mechanism } = self.critical_step(&cast_forcing(forcing))?;
+        let step = step.primal();
+        Some(CriticalStep { step, mechanism })
     }
 
     fn particle_count(&self) -> usize {
@@ -99,6 +119,14 @@ where
 
     fn bytes_per_particle(&self) -> f64 {
         self.bytes_per_particle()
+    }
+}
+
+fn cast_conservation<T: Scalar>(errors: &Conservation<T>) -> Conservation<f64> {
+    Conservation {
+        mass: errors.mass.primal(),
+        momentum: errors.momentum.primal(),
+        momentum_scaled: errors.momentum_scaled.primal(),
     }
 }
 
@@ -120,6 +148,9 @@ fn cast_forcing<T: Scalar, const D: usize>(forcing: &Forcing<f64, D>) -> Forcing
             },
         };
         result.set_face(face, condition);
+        if let PoreCondition::Pressure(pressure) = forcing.pores(face) {
+            result.set_pores(face, PoreCondition::Pressure(T::lit(pressure)));
+        }
     }
     result
 }

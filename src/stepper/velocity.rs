@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::acceleration::for_each_held;
+use super::acceleration::Walls;
 use super::matrix::Unknown;
 use super::{Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
@@ -61,7 +61,7 @@ where
     fn map_particles(&mut self) -> T {
         let (basis, grid, momentum) = (&self.basis, &self.grid, &mut self.dofs.velocity);
         let (mass, velocity) = (&self.particles.mass, &self.particles.velocity);
-        let cloud = cloud(grid, &self.bins, &self.particles);
+        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
         self.reconstruction.integrate_conserved(
             &cloud,
             |p| velocity[p] * mass[p],
@@ -83,7 +83,7 @@ where
         let (basis, grid) = (&self.basis, &self.grid);
         let (momentum, lumped) = (&mut self.dofs.velocity, &mut self.dofs.lumped);
         lumped.fill(T::zero());
-        let cloud = cloud(grid, &self.bins, &self.particles);
+        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
         let amounts = amounts(&self.particles.mass, &self.particles.velocity);
         self.reconstruction
             .integrate_conserved(&cloud, amounts, |point, amount| {
@@ -100,7 +100,7 @@ where
         let (basis, grid) = (&self.basis, &self.grid);
         let (momentum, matrix) = (&mut self.dofs.velocity, &mut self.dofs.matrix);
         matrix.clear();
-        let cloud = cloud(grid, &self.bins, &self.particles);
+        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
         let amounts = amounts(&self.particles.mass, &self.particles.velocity);
         self.reconstruction
             .integrate_conserved(&cloud, amounts, |point, amount| {
@@ -123,16 +123,12 @@ where
             self.divide_by_lumped_mass();
         } else {
             let pick = |velocity, _| velocity;
-            self.dofs.solve(
-                Unknown::Velocity,
-                self.velocity_mass,
-                &self.face_dofs,
-                forcing,
-                pick,
-            );
+            let walls = Walls::of_solid(&self.face_dofs, forcing);
+            self.dofs
+                .solve(Unknown::Velocity, self.velocity_mass, &walls, true, pick);
         }
         let velocities = &mut self.dofs.velocity;
-        for_each_held(&self.face_dofs, forcing, |dof, axis, velocity, _| {
+        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, velocity, _| {
             velocities[dof][axis] = velocity;
         });
     }
@@ -144,14 +140,19 @@ where
         } else {
             &dofs.lumped
         };
-        for (velocity, &mass) in dofs.velocity.iter_mut().zip(mass) {
-            // A fitted density may be negative somewhere; only a vanishing mass has no velocity.
-            *velocity = if mass == T::zero() {
-                SVector::zeros()
-            } else {
-                *velocity / mass
-            };
-        }
+        divide(&mut dofs.velocity, mass);
+    }
+}
+
+/// Momentum to velocity, DOF by DOF.
+pub(super) fn divide<T: Scalar, const D: usize>(velocity: &mut [SVector<T, D>], mass: &[T]) {
+    for (velocity, &mass) in velocity.iter_mut().zip(mass) {
+        // A fitted density may be negative somewhere; only a vanishing mass has no velocity.
+        *velocity = if mass == T::zero() {
+            SVector::zeros()
+        } else {
+            *velocity / mass
+        };
     }
 }
 
@@ -166,6 +167,6 @@ fn amounts<'a, T: Scalar, const D: usize>(
     }
 }
 
-fn sum<T: Scalar>(values: &[T]) -> T {
+pub(super) fn sum<T: Scalar>(values: &[T]) -> T {
     values.iter().fold(T::zero(), |sum, &v| sum + v)
 }

@@ -21,7 +21,7 @@ fn scene(method: Method, step: f64) -> Scene {
 #[test]
 fn the_estimate_separates_stable_from_unstable_runs() {
     for method in Method::ALL {
-        let critical = critical_step(&scene(method, 1e-7)).unwrap().unwrap();
+        let critical = critical_step(&scene(method, 1e-7)).unwrap().unwrap().step;
         let highest = |share: f64| match run(&scene(method, share * critical), None, &mut |_| {}) {
             Ok(outcome) => outcome.summary.energy.highest_ratio.unwrap(),
             Err(_) => f64::INFINITY,

@@ -68,7 +68,7 @@ fn compare<R: Reconstruction<f64, 1> + Clone>(reconstruction: R) {
     let mut wet = bar(reconstruction.clone(), solid, LockedWater { stiffness: water });
     let mut dry = bar(reconstruction, solid + water, OnePhase);
     let forcing = fixed_ends();
-    let steps = [wet.critical_step(&forcing), dry.critical_step(&forcing)].map(Option::unwrap);
+    let steps = [wet.critical_step(&forcing), dry.critical_step(&forcing)].map(|limit| limit.unwrap().step);
     approx::assert_relative_eq!(steps[0], steps[1], max_relative = 1e-6);
     for _ in 0..200 {
         wet.step(2e-5, &forcing).unwrap();

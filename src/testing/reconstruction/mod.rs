@@ -66,6 +66,7 @@ pub fn check_reconstruction<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
         bins: &bins,
         positions,
         volumes: &volumes[..positions.len()],
+        cuts: &[],
     };
     reconstruction.prepare(&cloud);
     stream::check(reconstruction, &cloud, claims.measure)?;

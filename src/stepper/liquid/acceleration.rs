@@ -1,0 +1,73 @@
+//! Accelerations of both phases.
+
+use nalgebra::SVector;
+
+use super::super::acceleration::Walls;
+use super::super::{Forcing, Stepper};
+use crate::basis::BasisFamily;
+use crate::law::ConstitutiveLaw;
+use crate::phase::{Drag, Phase};
+use crate::reconstruction::Reconstruction;
+use crate::scalar::Scalar;
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    /// Turns the forces of both phases into accelerations; a DOF that no particle reaches has none.
+    ///
+    /// Implicit drag takes the velocities at the end of the step, `v + dt a`: two equations in two unknowns a DOF, here solved
+    /// without products of masses, which would underflow in nearly empty cells.
+    pub(in super::super) fn accelerate_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
+        let n = self.phase.porosity();
+        let implicit = self.phase.drag_treatment() == Drag::Implicit;
+        let body_force = forcing.body_force;
+        let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
+        for (i, &d) in self.drag.iter().enumerate() {
+            let (m_s, m_bar) = (solid.mass[i], liquid.mass[i]);
+            if !(m_s > T::zero() && m_bar > T::zero()) {
+                solid.force[i] = SVector::zeros();
+                liquid.force[i] = SVector::zeros();
+                continue;
+            }
+            let m_w = m_bar / n;
+            let slip = solid.velocity[i] - liquid.velocity[i];
+            let on_liquid = liquid.force[i] + body_force * m_w + slip * d;
+            let on_whole = solid.force[i] + body_force * (m_s + m_bar);
+            let a_w = if implicit {
+                let drag = dt * d;
+                (on_liquid + on_whole * (drag / m_s)) / (m_w + drag * (T::one() + m_bar / m_s))
+            } else {
+                on_liquid / m_w
+            };
+            solid.force[i] = (on_whole - a_w * m_bar) / m_s;
+            liquid.force[i] = a_w;
+        }
+        self.hold_both(dt, forcing);
+        self.seal_surfaces(dt, forcing);
+    }
+
+    /// Told accelerations at held DOFs. Where the liquid passes a held face it still feels the solid's drag, now that of a
+    /// solid that moves as told.
+    fn hold_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
+        let n = self.phase.porosity();
+        let implicit = self.phase.drag_treatment() == Drag::Implicit;
+        let (solid, liquid, drag) = (&mut self.dofs.force, &mut self.liquid.force, &self.drag);
+        let liquid_mass = &self.liquid.mass;
+        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, told| {
+            if implicit && liquid_mass[dof] > T::zero() {
+                let drag = dt * drag[dof];
+                let share = drag / (liquid_mass[dof] / n + drag);
+                liquid[dof][axis] += share * (told - solid[dof][axis]);
+            }
+            solid[dof][axis] = told;
+        });
+        Walls::of_liquid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, told| {
+            liquid[dof][axis] = told;
+        });
+    }
+}
