@@ -160,7 +160,7 @@ impl Method {
     pub fn dispatch<T: Scalar, V: MethodVisitor<T>>(self, visitor: V) -> Option<V::Output> {
         match self.basis {
             Basis::Linear => Some(self.with_basis(Linear, visitor)),
-            Basis::DualDomain => Some(self.with_basis(DualDomain, visitor)),
+            Basis::DualDomain => Some(self.with_basis(DualDomain::new(), visitor)),
             Basis::BSpline { degree: 1 } => Some(self.with_basis(BSpline::<1>, visitor)),
             Basis::BSpline { degree: 2 } => Some(self.with_basis(BSpline::<2>, visitor)),
             Basis::BSpline { degree: 3 } => Some(self.with_basis(BSpline::<3>, visitor)),

@@ -1,7 +1,11 @@
 //! Dual domain: linear values, smoothed gradients.
 
-use super::Linear;
-use super::tensor::{AxisFamily, Row};
+use nalgebra::SVector;
+
+use super::tensor::{self, AxisFamily, Row};
+use super::{BasisFamily, Linear};
+use crate::grid::{Cell, Grid};
+use crate::particles::Bins;
 use crate::scalar::Scalar;
 
 /// Dual domain basis (Zhang, Ma & Giguere 2011, journal section 3.3): values of the linear hats, smoothed gradients
@@ -12,48 +16,170 @@ use crate::scalar::Scalar;
 ///
 /// $\alpha$ vanishes at cell edges, so the gradient is continuous there and reaches one cell further than the value. Node
 /// $j$'s smoothed slope of a nodal field is the central difference, at the ends of the domain the one-sided one (there both
-/// the integral and $V_j$ are halved). Beyond one dimension the gradient along an axis takes this slope along that axis and
-/// linear values along the others.
+/// the integral and $V_j$ are halved). The domain of the integrals is the cells that hold particles: at a free surface
+/// inside the grid a node beyond it moves with nothing, and a central difference over it would be no slope. Beyond one
+/// dimension the gradient along an axis takes this slope along that axis and linear values along the others.
 #[doc = include_str!("../../docs/formulas.html")]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DualDomain;
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DualDomain {
+    /// For each cell its neighbours that are missing, see [`side`]; empty if every cell of the grid counts.
+    missing: Vec<u8>,
+}
+
+/// Bit of a cell's neighbour: below or above it along an axis.
+fn side(axis: usize, above: bool) -> u8 {
+    1 << (2 * axis + usize::from(above))
+}
+
+impl DualDomain {
+    /// On a grid whose every cell counts, until [`BasisFamily::take_in`] says which do.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The neighbours that the cell lacks.
+    #[inline(always)]
+    fn missing<T: Scalar, const D: usize>(&self, grid: &Grid<T, D>, cell: &Cell<D>) -> u8 {
+        match self.missing.get(grid.linear(cell)) {
+            Some(&missing) => missing,
+            None => (0..D).fold(0, |bits, axis| {
+                let last = cell[axis] as usize + 1 == grid.cells()[axis];
+                let below = if cell[axis] == 0 { side(axis, false) } else { 0 };
+                let above = if last { side(axis, true) } else { 0 };
+                bits | below | above
+            }),
+        }
+    }
+}
+
+/// Nodes, values and slopes in `cell`; `ends` says on which sides the domain ends there.
+#[inline(always)]
+fn row<T: Scalar>(cells: usize, cell: usize, unit: T, ends: [bool; 2]) -> Row<T, 4> {
+    let (zero, one) = (T::zero(), T::one());
+    let two = one + one;
+    let (left, right) = (one - unit, unit);
+    let alpha = two * left * right;
+    let smooth_left = (one - alpha) * left;
+    let smooth_right = (one - alpha) * right;
+    // Slopes of the four nodes cell - 1 ... cell + 2.
+    let mut slope = [zero, -alpha, alpha, zero];
+    if ends[0] {
+        slope[1] -= smooth_left;
+        slope[2] += smooth_left;
+    } else {
+        slope[0] -= smooth_left / two;
+        slope[2] += smooth_left / two;
+    }
+    if ends[1] {
+        slope[1] -= smooth_right;
+        slope[2] += smooth_right;
+    } else {
+        slope[1] -= smooth_right / two;
+        slope[3] += smooth_right / two;
+    }
+    Row {
+        dof: [cell.saturating_sub(1), cell, cell + 1, (cell + 2).min(cells)],
+        value: [zero, left, right, zero],
+        slope,
+    }
+}
 
 impl<T: Scalar> AxisFamily<T, 4> for DualDomain {
     fn dofs_on_axis(&self, cells: usize) -> usize {
         cells + 1
     }
 
+    /// On an axis whose every cell counts.
     #[inline(always)]
     fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, 4> {
-        let (zero, one) = (T::zero(), T::one());
-        let two = one + one;
-        let (left, right) = (one - unit, unit);
-        let alpha = two * left * right;
-        let smooth_left = (one - alpha) * left;
-        let smooth_right = (one - alpha) * right;
-        // Slopes of the four nodes cell - 1 ... cell + 2.
-        let mut slope = [zero, -alpha, alpha, zero];
-        if cell == 0 {
-            slope[1] -= smooth_left;
-            slope[2] += smooth_left;
-        } else {
-            slope[0] -= smooth_left / two;
-            slope[2] += smooth_left / two;
-        }
-        if cell + 1 == cells {
-            slope[1] -= smooth_right;
-            slope[2] += smooth_right;
-        } else {
-            slope[1] -= smooth_right / two;
-            slope[3] += smooth_right / two;
-        }
-        Row {
-            dof: [cell.saturating_sub(1), cell, cell + 1, (cell + 2).min(cells)],
-            value: [zero, left, right, zero],
-            slope,
-        }
+        row(cells, cell, unit, [cell == 0, cell + 1 == cells])
     }
 }
 
-// Gauss points stand still, so nothing crosses there: the plain gradient is the accurate one.
-crate::tensor_product_family!(DualDomain, width = 4, degree = 1, at_fixed_points = Linear);
+impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
+    const TAKES_IN_CELLS: bool = true;
+
+    fn take_in(&mut self, grid: &Grid<T, D>, bins: &Bins<D>) {
+        self.missing.clear();
+        self.missing.resize(grid.cell_count(), 0);
+        let cells = grid.cells();
+        let empty = |cell: &Cell<D>| bins.particles_in(grid.linear(cell)).is_empty();
+        for &number in bins.occupied() {
+            let cell = grid.cell(number as usize);
+            for axis in 0..D {
+                let (mut below, mut above) = (cell, cell);
+                above[axis] += 1;
+                let last = above[axis] as usize == cells[axis];
+                below[axis] = cell[axis].saturating_sub(1);
+                if cell[axis] == 0 || empty(&below) {
+                    self.missing[number as usize] |= side(axis, false);
+                }
+                if last || empty(&above) {
+                    self.missing[number as usize] |= side(axis, true);
+                }
+            }
+        }
+    }
+
+    fn degree(&self) -> usize {
+        1
+    }
+
+    fn dofs(&self, grid: &Grid<T, D>) -> [usize; D] {
+        tensor::dofs::<T, D, 4, _>(self, grid)
+    }
+
+    #[inline(always)]
+    fn for_each(
+        &self,
+        grid: &Grid<T, D>,
+        cell: &Cell<D>,
+        x: &SVector<T, D>,
+        f: impl FnMut(usize, T, SVector<T, D>),
+    ) {
+        let cells = grid.cells();
+        let missing = self.missing(grid, cell);
+        let rows = std::array::from_fn(|axis| {
+            let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
+            let ends = [false, true].map(|above| missing & side(axis, above) != 0);
+            row(cells[axis], cell[axis] as usize, unit, ends)
+        });
+        tensor::product_of_rows(grid, &rows, |axis| cells[axis] + 1, f);
+    }
+
+    /// Gauss points stand still, so nothing crosses there: the plain gradient is the accurate one.
+    #[inline(always)]
+    fn for_each_at_fixed_point(
+        &self,
+        grid: &Grid<T, D>,
+        cell: &Cell<D>,
+        x: &SVector<T, D>,
+        f: impl FnMut(usize, T, SVector<T, D>),
+    ) {
+        Linear.for_each(grid, cell, x, f);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::vector;
+
+    /// A linear field whose nodes beyond the surface have not moved: its slope at every particle is still its slope.
+    #[test]
+    fn a_node_beyond_the_last_particle_has_no_part_in_the_slope() {
+        let grid = Grid::new(vector![0.0], vector![5.0], [5]).unwrap();
+        let x = [0.5, 1.5, 2.2, 2.9].map(|x| vector![x]);
+        let bins = Bins::new(&grid, &x).unwrap();
+        let mut family = DualDomain::new();
+        family.take_in(&grid, &bins);
+        let field = [0.0, 1.0, 2.0, 3.0, 0.0, 0.0];
+        for (p, x) in x.iter().enumerate() {
+            let mut slope = 0.0;
+            family.for_each(&grid, bins.cell_of(p), x, |i, _, gradient| {
+                slope += field[i] * gradient[0];
+            });
+            assert!((slope - 1.0_f64).abs() < 1e-14, "{x}: {slope}");
+        }
+    }
+}

@@ -16,6 +16,7 @@ pub use tensor::{AxisFamily, Row};
 use nalgebra::SVector;
 
 use crate::grid::{Cell, Face, Grid, Side};
+use crate::particles::Bins;
 use crate::scalar::Scalar;
 
 /// A family of grid basis functions `phi_i` in `D` dimensions.
@@ -27,6 +28,12 @@ use crate::scalar::Scalar;
     note = "families: Linear, DualDomain, BSpline<1>, BSpline<2>, BSpline<3>, or your own `impl BasisFamily`"
 )]
 pub trait BasisFamily<T: Scalar, const D: usize>: Clone {
+    /// Whether [`BasisFamily::take_in`] does anything.
+    const TAKES_IN_CELLS: bool = false;
+
+    /// Takes in which cells hold particles, before a step; for families whose functions depend on where the material ends.
+    fn take_in(&mut self, _grid: &Grid<T, D>, _bins: &Bins<D>) {}
+
     /// Polynomial degree of the values: what they can reproduce, and how far apart along an axis two DOFs
     /// can be whose values overlap.
     fn degree(&self) -> usize;

@@ -41,13 +41,24 @@ pub fn for_each<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
     grid: &Grid<T, D>,
     cell: &Cell<D>,
     x: &SVector<T, D>,
-    mut f: impl FnMut(usize, T, SVector<T, D>),
+    f: impl FnMut(usize, T, SVector<T, D>),
 ) {
     let cells = grid.cells();
-    let rows: [Row<T, W>; D] = std::array::from_fn(|axis| {
+    let rows = std::array::from_fn(|axis| {
         let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
         family.row(cells[axis], cell[axis] as usize, unit)
     });
+    product_of_rows(grid, &rows, |axis| family.dofs_on_axis(cells[axis]), f);
+}
+
+/// Visits the products of `rows`, one per axis, on a lattice of `dofs(axis)` DOFs along each.
+#[inline(always)]
+pub fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
+    grid: &Grid<T, D>,
+    rows: &[Row<T, W>; D],
+    dofs: impl Fn(usize) -> usize,
+    mut f: impl FnMut(usize, T, SVector<T, D>),
+) {
     let inverse = grid.inverse_cell_size();
     if D == 1 {
         for k in 0..W {
@@ -56,10 +67,10 @@ pub fn for_each<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
         }
         return;
     }
-    let shape = dofs(family, grid);
+    let shape = std::array::from_fn(dofs);
     let mut k = [0; D];
     loop {
-        let (dof, value, gradient) = product(&shape, &rows, &k, inverse);
+        let (dof, value, gradient) = product(&shape, rows, &k, inverse);
         f(dof, value, gradient);
         if !advance(&mut k, W) {
             return;

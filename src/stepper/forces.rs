@@ -63,7 +63,7 @@ where
         }
     }
 
-    pub(super) fn add_tractions(&mut self, forcing: &Forcing<T, D>) {
+    fn add_tractions(&mut self, forcing: &Forcing<T, D>) {
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
             let FaceCondition::Traction(traction) = forcing.face(point.face) else {

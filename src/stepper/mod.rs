@@ -251,8 +251,14 @@ where
 
     /// Takes in where the particles are.
     fn prepare(&mut self) {
-        if !(R::FIELDS_AT_PARTICLES && R::AMOUNTS_AT_PARTICLES) {
+        let fits = !(R::FIELDS_AT_PARTICLES && R::AMOUNTS_AT_PARTICLES);
+        if fits || B::TAKES_IN_CELLS {
             self.bins.list(&self.grid);
+        }
+        if B::TAKES_IN_CELLS {
+            self.basis.take_in(&self.grid, &self.bins);
+        }
+        if fits {
             self.cut_cells();
         }
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);

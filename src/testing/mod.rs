@@ -15,7 +15,7 @@
 //!     gradients_are_derivatives: false, // they are smoothed
 //!     ..testing::BasisClaims::of_degree(1)
 //! };
-//! testing::check_basis(&DualDomain, &grid, &points, &claims)?;
+//! testing::check_basis(&DualDomain::new(), &grid, &points, &claims)?;
 //! # Ok(())
 //! # }
 //! ```

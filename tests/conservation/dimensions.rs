@@ -75,8 +75,12 @@ fn the_bar_in_a_box_is_the_bar_on_a_line() {
     let line = bar::<1, _, _>(BSpline::<2>, Shepard, lumped).0;
     assert_close(&line, bar::<2, _, _>(BSpline::<2>, Shepard, lumped), ROUND_OFF);
     assert_close(&line, bar::<3, _, _>(BSpline::<2>, Shepard, lumped), ROUND_OFF);
-    let line = bar::<1, _, _>(DualDomain, Shepard, lumped).0;
-    assert_close(&line, bar::<2, _, _>(DualDomain, Shepard, lumped), ROUND_OFF);
+    let line = bar::<1, _, _>(DualDomain::new(), Shepard, lumped).0;
+    assert_close(
+        &line,
+        bar::<2, _, _>(DualDomain::new(), Shepard, lumped),
+        ROUND_OFF,
+    );
 }
 
 /// Not to round-off, and rightly so: a fit with a given mean is not the product of fits along the axes (the functions of

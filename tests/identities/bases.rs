@@ -129,7 +129,7 @@ where
     }
     let body = layout.body::<T>();
     both(&Linear, &body)?;
-    both(&DualDomain, &body)?;
+    both(&DualDomain::new(), &body)?;
     both(&BSpline::<1>, &body)?;
     both(&BSpline::<2>, &body)?;
     both(&BSpline::<3>, &body)
@@ -170,7 +170,7 @@ fn equally_spaced_coefficients_do_not_reproduce_linear_fields_with_b_splines() {
         positions,
     };
     assert!(linear_field(&Linear, &body, 0, equally_spaced).0 < 1e-14);
-    assert!(linear_field(&DualDomain, &body, 0, equally_spaced).0 < 1e-14);
+    assert!(linear_field(&DualDomain::new(), &body, 0, equally_spaced).0 < 1e-14);
     // Known figures: half a cell's width is shared out among the ends; the largest misfit is near 0.2 cells.
     for error in [
         linear_field(&BSpline::<2>, &body, 0, equally_spaced).0,
@@ -195,7 +195,7 @@ fn dual_domain_gradients_are_continuous_where_linear_ones_jump() {
         }
         largest
     }
-    assert!(jump(&DualDomain) <= 4.0 * f64::EPSILON);
+    assert!(jump(&DualDomain::new()) <= 4.0 * f64::EPSILON);
     assert!(jump(&BSpline::<2>) <= 4.0 * f64::EPSILON);
     assert_eq!(jump(&Linear), 2.0);
 }

@@ -36,17 +36,21 @@ where
         }
     }
 
-    /// `-integral(sigma grad phi_i)` of the total stress and `-integral(p grad phi_i)` of the pressure, and the loads on the
-    /// surfaces.
+    /// `-integral(sigma grad phi_i)` of the total stress and `-integral(p grad phi_i)` of the pressure, both less the even part
+    /// of what loads the surfaces, and the rest of that load.
     pub(in super::super) fn assemble_both_forces(&mut self, forcing: &Forcing<T, D>) {
+        let even = self.even_load(forcing);
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         let (phase, data, effective) = (&self.phase, &self.particles.phase, &self.particles.stress);
         let (basis, whole, liquid) = (&self.basis, &mut self.dofs.force, &mut self.liquid.force);
         whole.fill(SVector::zeros());
         liquid.fill(SVector::zeros());
         let stresses = |p: usize| {
-            let total = phase.total_stress(&effective[p], &data[p]);
-            Pair(total, phase.liquid(&data[p]).pressure)
+            let mut total = phase.total_stress(&effective[p], &data[p]);
+            for a in 0..D {
+                total[(a, a)] -= even.stress;
+            }
+            Pair(total, phase.liquid(&data[p]).pressure - even.pressure)
         };
         self.reconstruction
             .integrate(&cloud, stresses, |point, Pair(total, pressure)| {
@@ -60,7 +64,6 @@ where
                     basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);
                 }
             });
-        self.add_tractions(forcing);
-        self.add_pore_pressures(forcing);
+        self.add_uneven_loads(&even, forcing);
     }
 }

@@ -1,11 +1,34 @@
 //! What the liquid meets at the bodies' surfaces.
 
-use super::super::{FaceCondition, Forcing, PoreCondition, Stepper};
+use nalgebra::SVector;
+
+use super::super::{FaceCondition, Forcing, PoreCondition, Stepper, SurfacePoint};
 use crate::basis::BasisFamily;
 use crate::law::ConstitutiveLaw;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+
+/// An even state that balances the load of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EvenLoad<T> {
+    /// Total stress (Pa).
+    pub(super) stress: T,
+    /// Pressure of the liquid (Pa).
+    pub(super) pressure: T,
+}
+
+fn is_held<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> bool {
+    matches!(forcing.face(point.face), FaceCondition::Held { .. })
+}
+
+/// Force per area (Pa) on the whole.
+fn traction<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> SVector<T, D> {
+    match forcing.face(point.face) {
+        FaceCondition::Traction(traction) => *traction,
+        FaceCondition::Free | FaceCondition::Held { .. } => SVector::zeros(),
+    }
+}
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
 where
@@ -15,19 +38,55 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
-    /// The outside pressure on the liquid, where it passes.
-    pub(super) fn add_pore_pressures(&mut self, forcing: &Forcing<T, D>) {
+    /// The load of one surface, as an even state of the whole body.
+    ///
+    /// With every surface of the bodies known, `integral(t phi_i) - integral(sigma grad phi_i)` does not change if the same
+    /// even stress is taken from `sigma` and, times the normal, from the loads `t`. Taking the load of a surface itself leaves
+    /// nothing to integrate where the body is in equilibrium with it, so that particles as quadrature points are exact there;
+    /// a point load against their sum is not. Beyond one dimension no even state fits a load, and none is taken.
+    pub(super) fn even_load(&self, forcing: &Forcing<T, D>) -> EvenLoad<T> {
+        let mut even = EvenLoad {
+            stress: T::zero(),
+            pressure: T::zero(),
+        };
+        if D > 1 {
+            return even;
+        }
+        let free = |point: &&SurfacePoint<T>| !is_held(forcing, point);
+        if let Some(point) = self.surface.iter().find(free) {
+            even.stress = traction(forcing, point)[0] * point.outward();
+        }
+        let pressures = self.surface.iter().map(|point| forcing.pores(point.face));
+        for condition in pressures {
+            if let PoreCondition::Pressure(pressure) = condition {
+                even.pressure = pressure;
+                break;
+            }
+        }
+        even
+    }
+
+    /// What loads the surfaces besides the even part: tractions on the whole, pressures on the liquid where it passes.
+    pub(super) fn add_uneven_loads(&mut self, even: &EvenLoad<T>, forcing: &Forcing<T, D>) {
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
-            let PoreCondition::Pressure(pressure) = forcing.pores(point.face) else {
-                continue;
+            let (axis, area, outward) = (point.face.axis, point.area, point.outward());
+            let mut load = SVector::zeros();
+            if !is_held(forcing, point) {
+                load = traction(forcing, point);
+                load[axis] -= even.stress * outward;
+            }
+            let pressure = match forcing.pores(point.face) {
+                PoreCondition::Pressure(pressure) => (pressure - even.pressure) * outward,
+                PoreCondition::Sealed => T::zero(),
             };
             let x = self.surface_position(point);
             let cell = self.bins.cell_of(point.particle);
-            let (axis, load) = (point.face.axis, pressure * point.area * point.outward());
-            let force = &mut self.liquid.force;
-            self.basis
-                .for_each(&self.grid, cell, &x, |i, phi, _| force[i][axis] += load * phi);
+            let (whole, liquid) = (&mut self.dofs.force, &mut self.liquid.force);
+            self.basis.for_each(&self.grid, cell, &x, |i, phi, _| {
+                whole[i] += load * (area * phi);
+                liquid[i][axis] += pressure * area * phi;
+            });
         }
     }
 
@@ -37,8 +96,7 @@ where
     pub(super) fn seal_surfaces(&mut self, dt: T, forcing: &Forcing<T, D>) {
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
-            let held = matches!(forcing.face(point.face), FaceCondition::Held { .. });
-            if held || forcing.pores(point.face) != PoreCondition::Sealed {
+            if is_held(forcing, point) || forcing.pores(point.face) != PoreCondition::Sealed {
                 continue;
             }
             let axis = point.face.axis;

@@ -45,7 +45,7 @@ where
     let grid = grid::<T, D>(cells);
     let points = points(&grid);
     check_basis(&Linear, &grid, &points, &BasisClaims::of_degree(1))?;
-    check_basis(&DualDomain, &grid, &points, &dual_domain(cells))?;
+    check_basis(&DualDomain::new(), &grid, &points, &dual_domain(cells))?;
     check_basis(&BSpline::<2>, &grid, &points, &BasisClaims::of_degree(2))?;
     check_basis(&BSpline::<3>, &grid, &points, &BasisClaims::of_degree(3))
 }
@@ -96,7 +96,7 @@ fn claims_that_are_too_bold_or_too_shy_are_found() {
     };
     assert_eq!(verdict(shy), Some(Property::FixedPointGradients));
     // Dual domain's gradients are no derivatives.
-    let bold = self::verdict(&DualDomain, &BasisClaims::of_degree(1));
+    let bold = self::verdict(&DualDomain::new(), &BasisClaims::of_degree(1));
     assert_eq!(bold, Some(Property::GradientsAreDerivatives));
 }
 
@@ -132,7 +132,7 @@ impl AxisFamily<f64, 4> for Faulty {
     }
 
     fn row(&self, cells: usize, cell: usize, unit: f64) -> Row<f64, 4> {
-        let mut row = DualDomain.row(cells, cell, unit);
+        let mut row = DualDomain::new().row(cells, cell, unit);
         let smooth = (1.0 - 2.0 * unit * (1.0 - unit)) * (1.0 - unit);
         match self.0 {
             Mistake::CentralAtEnds if cell == 0 => {
