@@ -183,11 +183,11 @@ impl<T: Scalar, const D: usize> Phase<T, D> for TwoPhase<T> {
 
     #[inline(always)]
     fn drag(&self, solid_mass: T, volume: T) -> T {
-        let weight = self.porosity * self.liquid_density * self.gravity * volume;
+        let unit = self.porosity * self.liquid_density * self.gravity;
         if self.permeability_exponent == T::zero() {
-            return weight / self.permeability;
+            return unit / self.permeability * volume;
         }
-        weight / self.permeability_at(volume * self.dry_density() / solid_mass)
+        unit * volume / self.permeability_at(volume * self.dry_density() / solid_mass)
     }
 
     #[inline(always)]

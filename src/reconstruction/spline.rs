@@ -135,38 +135,72 @@ impl<T: Scalar> CubicSpline<T> {
         }
     }
 
-    /// Spline through one scalar component: fills `values` and `curvatures` (second derivatives) with stride.
-    fn interpolate(&mut self, component: usize, stride: usize) {
+    /// Splines through the components of the values: fills `curvatures` (second derivatives). All components of a knot
+    /// before the next knot: the recurrences of one component wait for each other, those of several do not.
+    #[inline(always)]
+    fn interpolate(&mut self, stride: usize) {
         let n = self.knots.len();
-        let at = |i: usize| i * stride + component;
-        let difference = |s: &Self, i: usize| (s.values[at(i + 1)] - s.values[at(i)]) / s.gap(i);
         match n {
-            0..=2 => (0..n).for_each(|i| self.curvatures[at(i)] = T::zero()),
+            0..=2 => self.curvatures[..n * stride].fill(T::zero()),
             3 => {
-                let bend = T::lit(2.0) * (difference(self, 1) - difference(self, 0))
-                    / (self.knots[2] - self.knots[0]);
-                (0..n).for_each(|i| self.curvatures[at(i)] = bend);
+                let two = T::lit(2.0) / (self.knots[2] - self.knots[0]);
+                for c in 0..stride {
+                    let bend = two * (self.difference(1, stride, c) - self.difference(0, stride, c));
+                    (0..n).for_each(|i| self.curvatures[i * stride + c] = bend);
+                }
             }
             _ => {
-                let six = T::lit(6.0);
-                let mut before = T::zero();
-                for i in 1..n - 1 {
-                    let factor = self.factors[i - 1];
-                    let right = six * (difference(self, i) - difference(self, i - 1));
-                    before = (right - factor.lower * before) * factor.inverse_pivot;
-                    self.curvatures[at(i)] = before;
-                }
-                for i in (1..n - 2).rev() {
-                    let above = self.curvatures[at(i + 1)];
-                    self.curvatures[at(i)] -= self.factors[i - 1].upper * above;
-                }
-                let continued = |near: T, next: T, ratio: T| near + (near - next) * ratio;
-                let first = self.gap(0) / self.gap(1);
-                self.curvatures[at(0)] = continued(self.curvatures[at(1)], self.curvatures[at(2)], first);
-                let last = self.gap(n - 2) / self.gap(n - 3);
-                self.curvatures[at(n - 1)] =
-                    continued(self.curvatures[at(n - 2)], self.curvatures[at(n - 3)], last);
+                self.eliminate(stride);
+                self.continue_ends(stride);
             }
+        }
+    }
+
+    /// Divided difference of component `c` in interval `i`.
+    #[inline(always)]
+    fn difference(&self, i: usize, stride: usize, c: usize) -> T {
+        (self.values[(i + 1) * stride + c] - self.values[i * stride + c]) / self.gap(i)
+    }
+
+    /// Thomas algorithm for the inner second derivatives.
+    #[inline(always)]
+    fn eliminate(&mut self, stride: usize) {
+        let n = self.knots.len();
+        let six = T::lit(6.0);
+        self.curvatures[..stride].fill(T::zero());
+        for i in 1..n - 1 {
+            let factor = self.factors[i - 1];
+            let (left, right) = (six / self.gap(i - 1), six / self.gap(i));
+            for c in 0..stride {
+                let at = |i: usize| i * stride + c;
+                let (before, here, after) =
+                    (self.values[at(i - 1)], self.values[at(i)], self.values[at(i + 1)]);
+                let jump = (after - here) * right - (here - before) * left;
+                let lower = factor.lower * self.curvatures[at(i - 1)];
+                self.curvatures[at(i)] = (jump - lower) * factor.inverse_pivot;
+            }
+        }
+        for i in (1..n - 2).rev() {
+            let upper = self.factors[i - 1].upper;
+            for c in 0..stride {
+                let above = self.curvatures[(i + 1) * stride + c];
+                self.curvatures[i * stride + c] -= upper * above;
+            }
+        }
+    }
+
+    /// The outermost second derivatives, which the not-a-knot conditions give.
+    #[inline(always)]
+    fn continue_ends(&mut self, stride: usize) {
+        let n = self.knots.len();
+        let continued = |near: T, next: T, ratio: T| near + (near - next) * ratio;
+        let first = self.gap(0) / self.gap(1);
+        let last = self.gap(n - 2) / self.gap(n - 3);
+        for c in 0..stride {
+            let at = |i: usize| i * stride + c;
+            self.curvatures[at(0)] = continued(self.curvatures[at(1)], self.curvatures[at(2)], first);
+            self.curvatures[at(n - 1)] =
+                continued(self.curvatures[at(n - 2)], self.curvatures[at(n - 3)], last);
         }
     }
 
@@ -188,9 +222,7 @@ impl<T: Scalar> CubicSpline<T> {
                 self.values[i * stride + component] = sum.component(component);
             }
         }
-        for component in 0..stride {
-            self.interpolate(component, stride);
-        }
+        self.interpolate(stride);
     }
 
     /// Value at `x`, which lies in interval `i` or beyond the end it touches.

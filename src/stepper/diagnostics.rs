@@ -84,25 +84,33 @@ impl<T: Scalar> Diagnostics<T> {
             .iter()
             .zip(&particles.velocity)
             .map(|(&m, v)| v * m);
-        self.conservation.record(self.total_mass, parts, mapped);
+        self.conservation
+            .record(self.total_mass, &Sums::of(parts), mapped);
     }
 }
 
-impl<T: Scalar> Conservation<T> {
-    /// Compares the mapped totals with the mass and the momenta of the particles.
+/// Momentum of the particles, and the sum of its sizes.
+struct Sums<T, const D: usize> {
+    momentum: SVector<T, D>,
+    scale: T,
+}
+
+impl<T: Scalar, const D: usize> Sums<T, D> {
     #[inline(always)]
-    fn record<const D: usize>(
-        &mut self,
-        total_mass: T,
-        momenta: impl Iterator<Item = SVector<T, D>>,
-        mapped: MassMomentum<T, D>,
-    ) {
-        let mut momentum = SVector::<T, D>::zeros();
-        let mut scale = T::zero();
+    fn of(momenta: impl Iterator<Item = SVector<T, D>>) -> Self {
+        let (mut momentum, mut scale) = (SVector::zeros(), T::zero());
         for part in momenta {
             momentum += part;
             scale += if D == 1 { part[0].abs() } else { part.norm() };
         }
+        Self { momentum, scale }
+    }
+}
+
+impl<T: Scalar> Conservation<T> {
+    /// Compares the mapped totals with those of the particles.
+    fn record<const D: usize>(&mut self, total_mass: T, sums: &Sums<T, D>, mapped: MassMomentum<T, D>) {
+        let Sums { momentum, scale } = *sums;
         let mass = (mapped.mass - total_mass).abs() / total_mass;
         self.mass = self.mass.max(mass);
         let difference = (mapped.momentum - momentum).norm();
@@ -131,10 +139,14 @@ where
         let Some(errors) = &mut self.diagnostics.liquid_conservation else {
             return;
         };
-        let mass = |p: usize| phase.liquid_mass(particles.volume[p]);
-        let total = (0..particles.len()).fold(T::zero(), |sum, p| sum + mass(p));
-        let momenta = (0..particles.len()).map(|p| phase.liquid(&particles.phase[p]).velocity * mass(p));
-        errors.record(total, momenta, liquid);
+        let mut total = T::zero();
+        let momenta = (0..particles.len()).map(|p| {
+            let mass = phase.liquid_mass(particles.volume[p]);
+            total += mass;
+            phase.liquid(&particles.phase[p]).velocity * mass
+        });
+        let sums = Sums::of(momenta);
+        errors.record(total, &sums, liquid);
     }
 
     /// Kinetic and strain energy of the particles as they are, the liquid's included.

@@ -38,7 +38,7 @@ where
             self.assemble_particle_matrix();
         }
         if P::FLOWS {
-            return self.lump_both_masses();
+            return self.sum_masses(false);
         }
         let mass = &mut self.dofs.mass;
         mass.fill(T::zero());

@@ -89,6 +89,9 @@ where
     liquid: Dofs<T, D>,
     /// Drag of the DOFs (kg/s in 3-D), empty where no liquid flows.
     drag: Vec<T>,
+    /// Sums of both phases side by side, and what moves the particles; empty where no liquid flows.
+    sums: Vec<liquid::Sums<T, D>>,
+    motion: Vec<[SVector<T, D>; 2]>,
     /// DOFs of each face, in the order of [`Face::all`].
     face_dofs: Vec<Vec<u32>>,
     velocity_mass: VelocityMass,
@@ -207,6 +210,8 @@ where
             dofs,
             liquid,
             drag: vec![T::zero(); liquid_count],
+            sums: vec![liquid::Sums::zero(); liquid_count],
+            motion: vec![[SVector::zeros(); 2]; liquid_count],
             face_dofs,
             velocity_mass,
             time: T::zero(),
@@ -225,14 +230,12 @@ where
             return Err(StepError::StepSize { value: dt.primal() });
         }
         self.prepare();
-        self.lump_mass();
         if P::FLOWS {
-            self.map_both_before(forcing);
-            self.assemble_both_forces(forcing);
+            self.assemble_both(forcing);
             self.accelerate_both(dt, forcing);
-            self.update_both_velocities(dt);
-            self.map_both_after(forcing);
+            self.update_both_velocities(dt, forcing);
         } else {
+            self.lump_mass();
             self.assemble_forces(forcing);
             self.accelerate(forcing);
             self.update_particle_velocities(dt);
@@ -385,7 +388,8 @@ where
         let shared = self.reconstruction.bytes()
             + self.dofs.bytes()
             + self.liquid.bytes()
-            + size_of::<T>() * self.drag.len();
+            + (size_of::<T>() + size_of::<liquid::Sums<T, D>>() + 2 * size_of::<SVector<T, D>>())
+                * self.drag.len();
         let own =
             Particles::<T, D, L::State, P::Particle>::bytes_per_particle() + Bins::<D>::bytes_per_particle();
         own as f64 + shared as f64 / self.particles.len() as f64

@@ -20,8 +20,9 @@ where
     P: Phase<T, D>,
 {
     /// Particles move with the solid; the pressure follows both velocities.
+    #[inline(never)]
     pub(in super::super) fn advance_both(&mut self, dt: T) -> Result<(), StepError> {
-        let (solid, liquid) = (&self.dofs.velocity, &self.liquid.velocity);
+        let motion = &self.motion;
         let particles = &mut self.particles;
         for p in 0..particles.position.len() {
             let mut v = SVector::zeros();
@@ -29,9 +30,10 @@ where
             let mut liquid_gradient = SMatrix::<T, D, D>::zeros();
             let (cell, x) = (self.bins.cell_of(p), &particles.position[p]);
             self.basis.for_each(&self.grid, cell, x, |i, phi, grad_phi| {
-                v += solid[i] * phi;
-                gradient += solid[i] * grad_phi.transpose();
-                liquid_gradient += liquid[i] * grad_phi.transpose();
+                let [solid, liquid] = &motion[i];
+                v += solid * phi;
+                gradient += solid * grad_phi.transpose();
+                liquid_gradient += liquid * grad_phi.transpose();
             });
             let increment = gradient * dt;
             self.phase

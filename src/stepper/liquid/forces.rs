@@ -3,6 +3,8 @@
 use nalgebra::SVector;
 
 use super::super::{Forcing, Stepper, cloud};
+use super::dof::Sums;
+use super::surface::EvenLoad;
 use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::law::ConstitutiveLaw;
@@ -18,40 +20,82 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
-    /// Sums over the particles of solid mass, liquid mass and drag, each times `phi_i`.
-    pub(in super::super) fn lump_both_masses(&mut self) {
-        let (solid, liquid, drag) = (&mut self.dofs.mass, &mut self.liquid.mass, &mut self.drag);
-        for sums in [&mut *solid, &mut *liquid, &mut *drag] {
-            sums.fill(T::zero());
+    /// Masses, drag and forces of both phases, and their velocities at the step's start.
+    ///
+    /// The forces are `-integral(sigma grad phi_i)` of the total stress and `-integral(p grad phi_i)` of the pressure, both less
+    /// the even part of what loads the surfaces, and the rest of that load.
+    pub(in super::super) fn assemble_both(&mut self, forcing: &Forcing<T, D>) {
+        let even = self.even_load(forcing);
+        if R::FIELDS_AT_PARTICLES && R::AMOUNTS_AT_PARTICLES {
+            self.sum_everything(&even);
+        } else {
+            self.sum_masses(R::AMOUNTS_AT_PARTICLES);
+            self.integrate_forces(&even);
         }
-        for (p, x) in self.particles.position.iter().enumerate() {
-            let (m, volume) = (self.particles.mass[p], self.particles.volume[p]);
-            let (m_liquid, d) = (self.phase.liquid_mass(volume), self.phase.drag(m, volume));
-            let cell = self.bins.cell_of(p);
-            self.basis.for_each(&self.grid, cell, x, |i, phi, _| {
-                solid[i] += m * phi;
-                liquid[i] += m_liquid * phi;
-                drag[i] += d * phi;
-            });
-        }
+        self.map_both_before(forcing);
+        self.add_uneven_loads(&even, forcing);
     }
 
-    /// `-integral(sigma grad phi_i)` of the total stress and `-integral(p grad phi_i)` of the pressure, both less the even part
-    /// of what loads the surfaces, and the rest of that load.
-    pub(in super::super) fn assemble_both_forces(&mut self, forcing: &Forcing<T, D>) {
-        let even = self.even_load(forcing);
+    /// Sums over the particles of solid mass, liquid mass and drag, each times `phi_i`; with `momenta` of both momenta too.
+    pub(in super::super) fn sum_masses(&mut self, momenta: bool) {
+        self.sums.fill(Sums::zero());
+        let (basis, grid, phase, sums) = (&self.basis, &self.grid, &self.phase, &mut self.sums);
+        let particles = &self.particles;
+        for (p, x) in particles.position.iter().enumerate() {
+            let (m_s, volume) = (particles.mass[p], particles.volume[p]);
+            let (m_w, d) = (phase.liquid_mass(volume), phase.drag(m_s, volume));
+            let (mut q_s, mut q_w) = (SVector::zeros(), SVector::zeros());
+            if momenta {
+                q_s = particles.velocity[p] * m_s;
+                q_w = phase.liquid(&particles.phase[p]).velocity * m_w;
+            }
+            basis.for_each(grid, self.bins.cell_of(p), x, |i, phi, _| {
+                let sums = &mut sums[i];
+                sums.solid_mass += m_s * phi;
+                sums.liquid_mass += m_w * phi;
+                sums.drag += d * phi;
+                if momenta {
+                    sums.momenta[0] += q_s * phi;
+                    sums.momenta[1] += q_w * phi;
+                }
+            });
+        }
+        self.take_sums();
+    }
+
+    /// All sums in one pass, where the particles are the points of every integral.
+    #[inline(never)]
+    fn sum_everything(&mut self, even: &EvenLoad<T>) {
+        self.sums.fill(Sums::zero());
+        let (basis, grid, phase, sums) = (&self.basis, &self.grid, &self.phase, &mut self.sums);
+        let particles = &self.particles;
+        for (p, x) in particles.position.iter().enumerate() {
+            let (m_s, volume) = (particles.mass[p], particles.volume[p]);
+            let (m_w, d) = (phase.liquid_mass(volume), phase.drag(m_s, volume));
+            let liquid = phase.liquid(&particles.phase[p]);
+            let (q_s, q_w) = (particles.velocity[p] * m_s, liquid.velocity * m_w);
+            let Pair(total, pressure) = even.rest(phase, &particles.stress[p], &particles.phase[p]);
+            let (total, pressure) = (total * volume, pressure * volume);
+            basis.for_each(grid, self.bins.cell_of(p), x, |i, phi, gradient| {
+                let sums = &mut sums[i];
+                sums.solid_mass += m_s * phi;
+                sums.liquid_mass += m_w * phi;
+                sums.drag += d * phi;
+                sums.momenta[0] += q_s * phi;
+                sums.momenta[1] += q_w * phi;
+                sums.forces[0] -= total * gradient;
+                sums.forces[1] -= gradient * pressure;
+            });
+        }
+        self.take_sums();
+    }
+
+    #[inline(never)]
+    fn integrate_forces(&mut self, even: &EvenLoad<T>) {
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         let (phase, data, effective) = (&self.phase, &self.particles.phase, &self.particles.stress);
         let (basis, whole, liquid) = (&self.basis, &mut self.dofs.force, &mut self.liquid.force);
-        whole.fill(SVector::zeros());
-        liquid.fill(SVector::zeros());
-        let stresses = |p: usize| {
-            let mut total = phase.total_stress(&effective[p], &data[p]);
-            for a in 0..D {
-                total[(a, a)] -= even.stress;
-            }
-            Pair(total, phase.liquid(&data[p]).pressure - even.pressure)
-        };
+        let stresses = |p: usize| even.rest(phase, &effective[p], &data[p]);
         self.reconstruction
             .integrate(&cloud, stresses, |point, Pair(total, pressure)| {
                 let add = |i: usize, _, gradient: SVector<T, D>| {
@@ -64,6 +108,5 @@ where
                     basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);
                 }
             });
-        self.add_uneven_loads(&even, forcing);
     }
 }

@@ -11,8 +11,10 @@
 mod acceleration;
 mod advance;
 mod critical;
+mod dof;
 mod forces;
 mod surface;
 mod velocity;
 
 pub(super) use critical::Coupled;
+pub(super) use dof::Sums;

@@ -1,9 +1,10 @@
 //! What the liquid meets at the bodies' surfaces.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use super::super::{FaceCondition, Forcing, PoreCondition, Stepper, SurfacePoint};
 use crate::basis::BasisFamily;
+use crate::field::Pair;
 use crate::law::ConstitutiveLaw;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
@@ -16,6 +17,23 @@ pub(super) struct EvenLoad<T> {
     pub(super) stress: T,
     /// Pressure of the liquid (Pa).
     pub(super) pressure: T,
+}
+
+impl<T: Scalar> EvenLoad<T> {
+    /// Total stress and pressure of a particle less the even state.
+    #[inline(always)]
+    pub(super) fn rest<const D: usize, P: Phase<T, D>>(
+        &self,
+        phase: &P,
+        effective: &SMatrix<T, D, D>,
+        data: &P::Particle,
+    ) -> Pair<SMatrix<T, D, D>, T> {
+        let mut total = phase.total_stress(effective, data);
+        for a in 0..D {
+            total[(a, a)] -= self.stress;
+        }
+        Pair(total, phase.liquid(data).pressure - self.pressure)
+    }
 }
 
 fn is_held<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> bool {

@@ -9,7 +9,8 @@ use super::super::{Dofs, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::field::{MassMomentum, Pair};
 use crate::law::ConstitutiveLaw;
-use crate::mass::{Banded, VelocityMass};
+use crate::mass::VelocityMass;
+use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -22,107 +23,143 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
-    /// `v_p += dt sum_i phi_i(x_p) a_i` for both phases.
-    pub(in super::super) fn update_both_velocities(&mut self, dt: T) {
-        let (solid, liquid) = (&self.dofs.force, &self.liquid.force);
-        let particles = &mut self.particles;
-        for (p, x) in particles.position.iter().enumerate() {
-            let (mut a_s, mut a_w) = (SVector::zeros(), SVector::zeros());
-            let cell = self.bins.cell_of(p);
-            self.basis.for_each(&self.grid, cell, x, |i, phi, _| {
-                a_s += solid[i] * phi;
-                a_w += liquid[i] * phi;
-            });
-            particles.velocity[p] += a_s * dt;
-            self.phase.accelerate_liquid(a_w * dt, &mut particles.phase[p]);
-        }
-    }
-
-    /// DOF velocities of both phases at the step's start. Their masses serve the mapping after the update too: nothing has
+    /// DOF velocities of both phases at the step's start. The masses of the mapping serve again after the update: nothing has
     /// moved by then.
-    pub(in super::super) fn map_both_before(&mut self, forcing: &Forcing<T, D>) {
+    pub(super) fn map_both_before(&mut self, forcing: &Forcing<T, D>) {
         if !R::AMOUNTS_AT_PARTICLES {
+            self.clear_momenta();
             match self.velocity_mass {
-                VelocityMass::Lumped => self.lump_fitted_masses(),
-                VelocityMass::Consistent | VelocityMass::Constrained => self.assemble_both_matrices(),
+                VelocityMass::Lumped => self.integrate_lumped(),
+                VelocityMass::Consistent | VelocityMass::Constrained => self.integrate_consistent(),
             }
         }
-        self.map_both_momenta();
         self.divide_both(forcing, true);
     }
 
-    /// DOF velocities of both phases from the updated particles.
-    pub(in super::super) fn map_both_after(&mut self, forcing: &Forcing<T, D>) {
-        self.map_both_momenta();
+    /// `v_p += dt sum_i phi_i(x_p) a_i` for both phases, and the DOF velocities from the updated particles.
+    pub(in super::super) fn update_both_velocities(&mut self, dt: T, forcing: &Forcing<T, D>) {
+        self.lay_accelerations();
+        if R::AMOUNTS_AT_PARTICLES {
+            self.accelerate_and_sum_particles(dt);
+        } else {
+            self.accelerate_particles(dt);
+            self.clear_momenta();
+            self.integrate_momenta();
+        }
         let mapped = [&self.dofs, &self.liquid].map(|dofs| MassMomentum {
             mass: mapped_mass::<T, D, R>(dofs, self.velocity_mass),
             momentum: dofs.velocity.iter().fold(SVector::zeros(), |s, q| s + q),
         });
         self.record_both(mapped);
         self.divide_both(forcing, false);
+        self.lay_velocities();
     }
 
-    fn map_both_momenta(&mut self) {
+    #[inline(never)]
+    fn accelerate_particles(&mut self, dt: T) {
+        let (basis, grid, phase, motion) = (&self.basis, &self.grid, &self.phase, &self.motion);
+        let particles = &mut self.particles;
+        for (p, x) in particles.position.iter().enumerate() {
+            let (mut a_s, mut a_w) = (SVector::zeros(), SVector::zeros());
+            basis.for_each(grid, self.bins.cell_of(p), x, |i, phi, _| {
+                let [solid, liquid] = &motion[i];
+                a_s += solid * phi;
+                a_w += liquid * phi;
+            });
+            particles.velocity[p] += a_s * dt;
+            phase.accelerate_liquid(a_w * dt, &mut particles.phase[p]);
+        }
+    }
+
+    /// The same where the particles are the points of the mapping: their new momenta are summed in the same pass.
+    #[inline(never)]
+    fn accelerate_and_sum_particles(&mut self, dt: T) {
+        let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
+        let (motion, sums) = (&self.motion, &mut self.sums);
+        sums.iter_mut()
+            .for_each(|sums| sums.momenta = [SVector::zeros(); 2]);
+        let particles = &mut self.particles;
+        for (p, x) in particles.position.iter().enumerate() {
+            let (mut a_s, mut a_w) = (SVector::zeros(), SVector::zeros());
+            let cell = self.bins.cell_of(p);
+            basis.for_each(grid, cell, x, |i, phi, _| {
+                let [solid, liquid] = &motion[i];
+                a_s += solid * phi;
+                a_w += liquid * phi;
+            });
+            let (velocity, data) = (&mut particles.velocity[p], &mut particles.phase[p]);
+            *velocity += a_s * dt;
+            phase.accelerate_liquid(a_w * dt, data);
+            let q_s = *velocity * particles.mass[p];
+            let q_w = phase.liquid(data).velocity * phase.liquid_mass(particles.volume[p]);
+            basis.for_each(grid, cell, x, |i, phi, _| {
+                let [solid, liquid] = &mut sums[i].momenta;
+                *solid += q_s * phi;
+                *liquid += q_w * phi;
+            });
+        }
+        for (i, sums) in sums.iter().enumerate() {
+            [self.dofs.velocity[i], self.liquid.velocity[i]] = sums.momenta;
+        }
+    }
+
+    fn clear_momenta(&mut self) {
+        self.dofs.velocity.fill(SVector::zeros());
+        self.liquid.velocity.fill(SVector::zeros());
+    }
+
+    /// Momenta from the reconstructed densities.
+    fn integrate_momenta(&mut self) {
         let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
         let (solid, liquid) = (&mut self.dofs.velocity, &mut self.liquid.velocity);
-        solid.fill(SVector::zeros());
-        liquid.fill(SVector::zeros());
-        let particles = &self.particles;
-        let cloud = cloud(grid, &self.bins, particles, &self.cuts);
-        let momenta = |p: usize| {
-            let liquid = phase.liquid(&particles.phase[p]).velocity * phase.liquid_mass(particles.volume[p]);
-            Pair(particles.velocity[p] * particles.mass[p], liquid)
-        };
+        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
+        let momenta = momenta(phase, &self.particles);
         self.reconstruction
             .integrate_conserved(&cloud, momenta, |point, Pair(q_s, q_w)| {
-                let add = |i: usize, phi: T, _| {
+                basis.for_each_at_fixed_point(grid, &point.cell, &point.position, |i, phi, _| {
                     solid[i] += q_s * phi;
                     liquid[i] += q_w * phi;
-                };
-                if R::AMOUNTS_AT_PARTICLES {
-                    basis.for_each(grid, &point.cell, &point.position, add);
-                } else {
-                    basis.for_each_at_fixed_point(grid, &point.cell, &point.position, add);
-                }
-            });
-    }
-
-    /// Row sums of both masses from the reconstructed densities.
-    fn lump_fitted_masses(&mut self) {
-        let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
-        let (solid, liquid) = (&mut self.dofs.lumped, &mut self.liquid.lumped);
-        solid.fill(T::zero());
-        liquid.fill(T::zero());
-        let particles = &self.particles;
-        let cloud = cloud(grid, &self.bins, particles, &self.cuts);
-        let masses = |p: usize| Pair(particles.mass[p], phase.liquid_mass(particles.volume[p]));
-        self.reconstruction
-            .integrate_conserved(&cloud, masses, |point, Pair(m_s, m_w)| {
-                basis.for_each_at_fixed_point(grid, &point.cell, &point.position, |i, phi, _| {
-                    solid[i] += m_s * phi;
-                    liquid[i] += m_w * phi;
                 });
             });
     }
 
-    /// Mass matrices of both phases from the reconstructed densities.
-    fn assemble_both_matrices(&mut self) {
+    /// Momenta and row sums of both masses from the reconstructed densities.
+    fn integrate_lumped(&mut self) {
         let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
-        let (solid, liquid): (&mut Banded<T>, &mut Banded<T>) =
-            (&mut self.dofs.matrix, &mut self.liquid.matrix);
-        solid.clear();
-        liquid.clear();
-        let particles = &self.particles;
-        let cloud = cloud(grid, &self.bins, particles, &self.cuts);
-        let masses = |p: usize| Pair(particles.mass[p], phase.liquid_mass(particles.volume[p]));
+        let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
+        solid.lumped.fill(T::zero());
+        liquid.lumped.fill(T::zero());
+        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
+        let amounts = amounts(phase, &self.particles);
         self.reconstruction
-            .integrate_conserved(&cloud, masses, |point, Pair(m_s, m_w)| {
+            .integrate_conserved(&cloud, amounts, |point, Pair(masses, momenta)| {
+                basis.for_each_at_fixed_point(grid, &point.cell, &point.position, |i, phi, _| {
+                    solid.lumped[i] += masses.0 * phi;
+                    liquid.lumped[i] += masses.1 * phi;
+                    solid.velocity[i] += momenta.0 * phi;
+                    liquid.velocity[i] += momenta.1 * phi;
+                });
+            });
+    }
+
+    /// Momenta and matrices of both masses from the reconstructed densities.
+    fn integrate_consistent(&mut self) {
+        let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
+        let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
+        solid.matrix.clear();
+        liquid.matrix.clear();
+        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
+        let amounts = amounts(phase, &self.particles);
+        self.reconstruction
+            .integrate_conserved(&cloud, amounts, |point, Pair(masses, momenta)| {
                 let (cell, x) = (&point.cell, &point.position);
                 basis.for_each_at_fixed_point(grid, cell, x, |i, phi_i, _| {
-                    let (m_s, m_w) = (m_s * phi_i, m_w * phi_i);
+                    solid.velocity[i] += momenta.0 * phi_i;
+                    liquid.velocity[i] += momenta.1 * phi_i;
+                    let (m_s, m_w) = (masses.0 * phi_i, masses.1 * phi_i);
                     basis.for_each_at_fixed_point(grid, cell, x, |j, phi_j, _| {
-                        solid.add(i, j, m_s * phi_j);
-                        liquid.add(i, j, m_w * phi_j);
+                        solid.matrix.add(i, j, m_s * phi_j);
+                        liquid.matrix.add(i, j, m_w * phi_j);
                     });
                 });
             });
@@ -146,6 +183,39 @@ where
             let velocities = &mut dofs.velocity;
             walls.for_each_held(|dof, axis, velocity, _| velocities[dof][axis] = velocity);
         }
+    }
+}
+
+/// Momenta of solid and liquid of each particle.
+#[inline(always)]
+fn momenta<'a, T, const D: usize, S, P>(
+    phase: &'a P,
+    particles: &'a Particles<T, D, S, P::Particle>,
+) -> impl Fn(usize) -> Pair<SVector<T, D>, SVector<T, D>> + 'a
+where
+    T: Scalar,
+    P: Phase<T, D>,
+{
+    move |p| {
+        let liquid = phase.liquid(&particles.phase[p]).velocity * phase.liquid_mass(particles.volume[p]);
+        Pair(particles.velocity[p] * particles.mass[p], liquid)
+    }
+}
+
+/// Masses and momenta of solid and liquid of each particle.
+#[inline(always)]
+fn amounts<'a, T, const D: usize, S, P>(
+    phase: &'a P,
+    particles: &'a Particles<T, D, S, P::Particle>,
+) -> impl Fn(usize) -> Pair<Pair<T, T>, Pair<SVector<T, D>, SVector<T, D>>> + 'a
+where
+    T: Scalar,
+    P: Phase<T, D>,
+{
+    let momenta = momenta(phase, particles);
+    move |p| {
+        let masses = Pair(particles.mass[p], phase.liquid_mass(particles.volume[p]));
+        Pair(masses, momenta(p))
     }
 }
 
