@@ -9,3 +9,4 @@ mod examples;
 mod identities;
 mod phase;
 mod scenes;
+mod two_phase;

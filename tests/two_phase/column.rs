@@ -126,6 +126,11 @@ pub fn loaded(load: f64) -> Forcing<f64, 1> {
         .with_pores(TOP, PoreCondition::Pressure(0.0))
 }
 
+/// Base fixed and impermeable, top free and drained.
+pub fn drained() -> Forcing<f64, 1> {
+    loaded(0.0)
+}
+
 /// Report 18-2, Table 6: H = 1 m, E = 1e7 Pa, K_w = 3e8 Pa, n = 0.4.
 pub fn table_6(permeability: f64) -> (Soil, LinearElastic<f64>) {
     let soil = Soil {
@@ -140,6 +145,15 @@ pub fn table_6(permeability: f64) -> (Soil, LinearElastic<f64>) {
     let moduli = Moduli::uniaxial(1e7).unwrap();
     (soil, LinearElastic { moduli })
 }
+
+/// At rest, nothing strained.
+pub const AT_REST: TwoPhaseState = TwoPhaseState {
+    solid_displacement: 0.0,
+    solid_velocity: 0.0,
+    liquid_velocity: 0.0,
+    effective_stress: 0.0,
+    pore_pressure: 0.0,
+};
 
 /// Fields of the particles in the order of [`TwoPhaseState`]'s fields.
 pub fn fields(simulation: &dyn Simulation<1>) -> Vec<TwoPhaseState> {

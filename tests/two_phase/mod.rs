@@ -1,0 +1,9 @@
+//! Two phases: a saturated solid on the same stepper, all nine methods.
+
+pub mod column;
+mod consolidation;
+mod critical_step;
+mod drag;
+mod equilibrium;
+mod random;
+mod standing_wave;
