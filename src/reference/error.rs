@@ -24,6 +24,22 @@ pub enum ReferenceError {
         value: f64,
     },
 
+    /// A porosity is not a part of a whole.
+    #[error("porosity must lie between 0 and 1, exclusive, not {value}")]
+    InvalidPorosity {
+        /// The porosity.
+        value: f64,
+    },
+
+    /// A solution exists for one law of the permeability only.
+    #[error("the permeability must follow k = k0 lambda^{required} here, not lambda^{exponent}")]
+    WrongPermeability {
+        /// The exponent of the soil.
+        exponent: f64,
+        /// The exponent that the solution is for.
+        required: f64,
+    },
+
     /// A number of elements or a polynomial degree is out of range.
     #[error("{name} must lie between {lowest} and {highest}, not {value}")]
     OutOfRange {
@@ -44,10 +60,10 @@ pub enum ReferenceError {
         time: f64,
     },
 
-    /// The column would have to carry more tension than Hill's law can: its stress stays below Young's modulus.
-    #[error("no equilibrium: stress {stress} Pa at the base reaches Young's modulus {youngs_modulus} Pa")]
+    /// A load asks for more tension than Hill's law can bear: its stress stays below Young's modulus.
+    #[error("no equilibrium: stress {stress} Pa reaches Young's modulus {youngs_modulus} Pa")]
     NoEquilibrium {
-        /// Stress at the fixed base, Pa.
+        /// The stress, in a column that at its fixed base, Pa.
         stress: f64,
         /// Young's modulus, Pa.
         youngs_modulus: f64,

@@ -1,5 +1,5 @@
-//! Exact and converged solutions of one-dimensional dynamics of a one-phase continuum, against which the errors of
-//! material point runs are measured.
+//! Exact and converged solutions of one-dimensional dynamics of a one-phase continuum and of saturated soil, against
+//! which the errors of material point runs are measured.
 //!
 //! SI units, stresses positive in tension, `f64` throughout. Every solution is asked by *material* point: the state at
 //! time `t` of the point that was at `x0` at time 0, because that is what a material point of the method carries.
@@ -9,6 +9,12 @@
 //! | [`VibratingBar`] | closed form | bar with fixed ends, small strain |
 //! | [`StaticColumn`] | closed form | column under its weight, at rest, small or large strain |
 //! | [`LagrangianBar`] | converged numerically, with an estimate of its own error | bar and column in motion, any elastic law |
+//! | [`Consolidation`](two_phase::Consolidation) | closed form | consolidation, small strain |
+//! | [`XieLeo`](two_phase::XieLeo) | closed form | consolidation, large strain, without inertia |
+//! | [`StandingWave`](two_phase::StandingWave) | closed form | damped waves in saturated soil, small strain |
+//! | [`SaturatedColumn`](two_phase::SaturatedColumn) | closed form | saturated column under its weight, at rest |
+//!
+//! Soil has its own state and trait, see [`two_phase`].
 //!
 //! The benchmarks are those of Wobbes, Möller, Galavi and Vuik, *Conservative Taylor least squares reconstruction with
 //! application to material point methods*, Int. J. Numer. Methods Eng. 117 (2019), doi 10.1002/nme.5956.
@@ -18,13 +24,14 @@ mod error;
 mod lagrangian_bar;
 mod lobatto;
 mod static_column;
+pub mod two_phase;
 mod uniaxial_law;
 mod vibrating_bar;
 
 pub use error::ReferenceError;
 pub use lagrangian_bar::{BarProblem, End, LagrangianBar, Resolution};
 pub use static_column::{StaticColumn, Strain};
-pub use uniaxial_law::{Hill, Hyperelastic, Linear, NeoHookean, UniaxialLaw};
+pub use uniaxial_law::{Hill, Hyperelastic, InvertibleLaw, Linear, Logarithmic, NeoHookean, UniaxialLaw};
 pub use vibrating_bar::VibratingBar;
 
 /// State of the reference at one material point.

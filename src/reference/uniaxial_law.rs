@@ -1,5 +1,7 @@
 //! Elastic laws of one-dimensional motion.
 
+use super::{ReferenceError, check};
+
 /// An elastic law of one-dimensional motion, in which the lateral stretches stay 1.
 ///
 /// A cross-section then keeps its area, so that Cauchy and nominal stress are the same number. `J` is the stretch of a
@@ -19,6 +21,17 @@ pub trait UniaxialLaw {
 pub trait Hyperelastic: UniaxialLaw {
     /// Stored energy per reference volume, J/m3: the integral of the stress over the stretch, from 1.
     fn energy(&self, stretch: f64) -> f64;
+}
+
+/// A law that says which stretch a stress belongs to.
+///
+/// With soil, it is where consolidation under a load ends: the stretch at which the skeleton carries all of it.
+pub trait InvertibleLaw: UniaxialLaw {
+    /// The stretch at `stress`, Pa.
+    ///
+    /// # Errors
+    /// [`ReferenceError::NoEquilibrium`] where no stretch has that stress, and where it is not finite.
+    fn stretch(&self, stress: f64) -> Result<f64, ReferenceError>;
 }
 
 /// The linear law of small strain, `sigma = E (J - 1)`.
@@ -41,6 +54,12 @@ impl UniaxialLaw for Linear {
 impl Hyperelastic for Linear {
     fn energy(&self, stretch: f64) -> f64 {
         0.5 * self.youngs_modulus * (stretch - 1.0).powi(2)
+    }
+}
+
+impl InvertibleLaw for Linear {
+    fn stretch(&self, stress: f64) -> Result<f64, ReferenceError> {
+        Ok(1.0 + check::finite("stress", stress)? / self.youngs_modulus)
     }
 }
 
@@ -70,6 +89,53 @@ impl Hyperelastic for Hill {
     fn energy(&self, stretch: f64) -> f64 {
         let strain = stretch - 1.0;
         self.youngs_modulus * (strain - strain.ln_1p())
+    }
+}
+
+impl InvertibleLaw for Hill {
+    fn stretch(&self, stress: f64) -> Result<f64, ReferenceError> {
+        let youngs_modulus = self.youngs_modulus;
+        if check::finite("stress", stress)? < youngs_modulus {
+            Ok(youngs_modulus / (youngs_modulus - stress))
+        } else {
+            Err(ReferenceError::NoEquilibrium {
+                stress,
+                youngs_modulus,
+            })
+        }
+    }
+}
+
+/// The logarithmic law `sigma = E ln J`.
+///
+/// The law of soil in one-dimensional compression that the large-strain consolidation of K. H. Xie and C. J. Leo
+/// (Comput. Geotech. 31, 2004) belongs to. Its rate is `d sigma/dt = E dv/dx`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Logarithmic {
+    /// Young's modulus (in one-dimensional strain, the constrained modulus), Pa.
+    pub youngs_modulus: f64,
+}
+
+impl UniaxialLaw for Logarithmic {
+    fn stress(&self, stretch: f64) -> f64 {
+        self.youngs_modulus * (stretch - 1.0).ln_1p()
+    }
+
+    fn stiffness(&self, stretch: f64) -> f64 {
+        self.youngs_modulus / stretch
+    }
+}
+
+impl Hyperelastic for Logarithmic {
+    fn energy(&self, stretch: f64) -> f64 {
+        let strain = stretch - 1.0;
+        self.youngs_modulus * (stretch * strain.ln_1p() - strain)
+    }
+}
+
+impl InvertibleLaw for Logarithmic {
+    fn stretch(&self, stress: f64) -> Result<f64, ReferenceError> {
+        Ok((check::finite("stress", stress)? / self.youngs_modulus).exp())
     }
 }
 
@@ -139,6 +205,7 @@ mod tests {
     fn each_law_derives_from_its_energy() {
         assert_consistent(&Linear { youngs_modulus: 4e4 }, 4e4);
         assert_consistent(&Hill { youngs_modulus: 4e4 }, 4e4);
+        assert_consistent(&Logarithmic { youngs_modulus: 4e4 }, 4e4);
         assert_consistent(&NeoHookean { lambda: 2e4, mu: 1e4 }, 4e4);
     }
 
@@ -161,5 +228,21 @@ mod tests {
         let (lambda, mu, j) = (3.0, 5.0, 1.7_f64);
         let expected = lambda * j.ln() / j + mu / j * (j * j - 1.0);
         assert!((NeoHookean { lambda, mu }.stress(j) - expected).abs() < 1e-13);
+    }
+
+    #[test]
+    fn stretch_undoes_stress() {
+        fn assert_inverse(law: &impl InvertibleLaw) {
+            for stretch in STRETCHES {
+                let back = law.stretch(law.stress(stretch)).unwrap();
+                assert!((back - stretch).abs() < 1e-14, "{back} against {stretch}");
+            }
+            assert!(law.stretch(f64::NAN).is_err());
+        }
+        assert_inverse(&Linear { youngs_modulus: 4e4 });
+        assert_inverse(&Hill { youngs_modulus: 4e4 });
+        assert_inverse(&Logarithmic { youngs_modulus: 4e4 });
+        let torn = Hill { youngs_modulus: 4e4 }.stretch(4e4);
+        assert!(matches!(torn, Err(ReferenceError::NoEquilibrium { .. })));
     }
 }
