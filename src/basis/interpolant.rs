@@ -116,7 +116,11 @@ mod tests {
     use crate::basis::{BSpline, DualDomain, Linear};
     use nalgebra::vector;
 
-    fn interpolant<B: BasisFamily<f64, 1>>(basis: &B, cells: usize, f: fn(f64) -> f64) -> impl Fn(f64) -> f64 {
+    fn interpolant<B: BasisFamily<f64, 1>>(
+        basis: &B,
+        cells: usize,
+        f: fn(f64) -> f64,
+    ) -> impl Fn(f64) -> f64 {
         let grid = Grid::new(vector![-1.0], vector![2.0], [cells]).unwrap();
         let field = Interpolant::<f64, 1>::new(basis, &grid, |x| Ok::<_, ()>(vector![f(x[0])])).unwrap();
         let basis = basis.clone();
@@ -149,8 +153,16 @@ mod tests {
         }
         assert!((order(&Linear) - 2.0).abs() < 0.1);
         assert!((order(&DualDomain) - 2.0).abs() < 0.1);
-        assert!((order(&BSpline::<2>) - 3.0).abs() < 0.15, "{}", order(&BSpline::<2>));
-        assert!((order(&BSpline::<3>) - 4.0).abs() < 0.2, "{}", order(&BSpline::<3>));
+        assert!(
+            (order(&BSpline::<2>) - 3.0).abs() < 0.15,
+            "{}",
+            order(&BSpline::<2>)
+        );
+        assert!(
+            (order(&BSpline::<3>) - 4.0).abs() < 0.2,
+            "{}",
+            order(&BSpline::<3>)
+        );
     }
 
     #[test]
@@ -166,8 +178,7 @@ mod tests {
     fn a_product_of_axes_interpolates_too() {
         let grid = Grid::new(vector![0.0, 0.0], vector![1.0, 2.0], [3, 4]).unwrap();
         let f = |x: &SVector<f64, 2>| x[0] * x[0] - x[0] * x[1] * x[1] + 1.0;
-        let field =
-            Interpolant::<f64, 1>::new(&BSpline::<2>, &grid, |x| Ok::<_, ()>(vector![f(x)])).unwrap();
+        let field = Interpolant::<f64, 1>::new(&BSpline::<2>, &grid, |x| Ok::<_, ()>(vector![f(x)])).unwrap();
         for x in [vector![0.11, 1.93], vector![0.7, 0.4], vector![1.0, 2.0]] {
             assert!((field.at(&BSpline::<2>, &grid, &x)[0] - f(&x)).abs() < 1e-13);
         }
