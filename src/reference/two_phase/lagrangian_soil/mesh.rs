@@ -10,18 +10,37 @@ pub(super) struct Mesh {
     rule: Lobatto,
     /// Row `i` of an element: what the stress at each of its nodes contributes to the internal force on node `i`.
     weak_derivative: Vec<f64>,
-    elements: usize,
-    size: f64,
+    /// Heights above the base at which elements end, m.
+    edges: Vec<f64>,
+    /// The root of the largest eigenvalue of an element of length 2.
+    largest_eigenvalue: f64,
 }
 
 impl Mesh {
-    pub(super) fn new(height: f64, resolution: Resolution) -> Self {
+    /// Equal elements, of which those at `refined` ends are halved `level` times towards their ends.
+    pub(super) fn new(height: f64, resolution: Resolution, refined: [bool; 2], level: usize) -> Self {
+        let size = height / resolution.elements as f64;
+        let parts = || {
+            (0..level).scan(size, |part, _| {
+                *part *= 0.5;
+                Some(*part)
+            })
+        };
+        let mut edges: Vec<f64> = (1..resolution.elements)
+            .map(|element| element as f64 * size)
+            .collect();
+        edges.extend([0.0, height]);
+        let [base, top] = refined;
+        edges.extend(parts().filter(|_| base));
+        edges.extend(parts().filter(|_| top).map(|part| height - part));
+        edges.sort_by(f64::total_cmp);
+        edges.dedup();
         let rule = Lobatto::new(resolution.degree);
         Self {
             weak_derivative: rule.weak_derivative(),
+            largest_eigenvalue: rule.largest_eigenvalue().sqrt(),
             rule,
-            elements: resolution.elements,
-            size: height / resolution.elements as f64,
+            edges,
         }
     }
 
@@ -30,23 +49,32 @@ impl Mesh {
         self.rule.nodes().len()
     }
 
+    fn element_count(&self) -> usize {
+        self.edges.len() - 1
+    }
+
+    /// Length of an element, m.
+    fn size(&self, element: usize) -> f64 {
+        self.edges[element + 1] - self.edges[element]
+    }
+
     pub(super) fn node_count(&self) -> usize {
-        self.elements * self.rule.degree() + 1
+        self.element_count() * self.rule.degree() + 1
     }
 
     pub(super) fn point_count(&self) -> usize {
-        self.elements * self.width()
+        self.element_count() * self.width()
     }
 
     /// First node of each element.
     pub(super) fn first_nodes(&self) -> impl Iterator<Item = usize> {
-        (0..self.elements).map(|element| element * self.rule.degree())
+        (0..self.element_count()).map(|element| element * self.rule.degree())
     }
 
     /// Height of a node above the base, m.
     pub(super) fn node(&self, node: usize) -> f64 {
-        let (element, local) = (node / self.rule.degree(), node % self.rule.degree());
-        self.coordinate(element, local)
+        let element = (node / self.rule.degree()).min(self.element_count() - 1);
+        self.coordinate(element, node - element * self.rule.degree())
     }
 
     /// Height of a point above the base, m.
@@ -55,30 +83,33 @@ impl Mesh {
     }
 
     fn coordinate(&self, element: usize, local: usize) -> f64 {
-        (element as f64 + 0.5 * (1.0 + self.rule.nodes()[local])) * self.size
+        let xi = self.rule.nodes()[local];
+        0.5 * ((1.0 - xi) * self.edges[element] + (1.0 + xi) * self.edges[element + 1])
     }
 
-    /// Weights of an element's points, m.
-    pub(super) fn weights(&self) -> impl Iterator<Item = f64> {
-        self.rule.weights().iter().map(|weight| 0.5 * self.size * weight)
+    /// Weights of the points of an element, m.
+    pub(super) fn weights(&self, element: usize) -> impl Iterator<Item = f64> {
+        let half = 0.5 * self.size(element);
+        self.rule.weights().iter().map(move |weight| half * weight)
     }
 
     /// Heights, m, and weights, m, of all points.
     pub(super) fn quadrature(&self) -> impl Iterator<Item = (f64, f64)> {
+        let weights = (0..self.element_count()).flat_map(|element| self.weights(element));
         (0..self.point_count())
             .map(|point| self.point(point))
-            .zip(std::iter::repeat_with(|| self.weights()).flatten())
+            .zip(weights)
     }
 
-    /// Derivative of an element's nodal values at each of its points.
-    pub(super) fn derivatives(&self, element: &[f64]) -> impl Iterator<Item = f64> {
-        let scale = 2.0 / self.size;
+    /// Derivative of the nodal `values` of an element at each of its points.
+    pub(super) fn derivatives(&self, element: usize, values: &[f64]) -> impl Iterator<Item = f64> {
+        let scale = 2.0 / self.size(element);
         self.rule
             .derivative_rows()
-            .map(move |row| scale * dot(row, element))
+            .map(move |row| scale * dot(row, values))
     }
 
-    /// Subtracts an element's internal forces under the `stress` at its points.
+    /// Subtracts the internal forces of an element, of any, under the `stress` at its points.
     pub(super) fn subtract_forces(&self, stress: &[f64], forces: &mut [f64]) {
         for (force, row) in forces
             .iter_mut()
@@ -88,17 +119,19 @@ impl Mesh {
         }
     }
 
-    /// Largest frequency of waves of unit speed, rad/s.
-    pub(super) fn largest_wave_number(&self) -> f64 {
-        2.0 / self.size * self.rule.largest_eigenvalue().sqrt()
+    /// Largest frequency that an element gives waves of unit speed, rad/s.
+    pub(super) fn largest_wave_number(&self, element: usize) -> f64 {
+        2.0 / self.size(element) * self.largest_eigenvalue
     }
 
     /// The element and the coordinate in it, -1 to 1, of a height above the base, m; beyond the ends, of the end. The
     /// edge of two elements belongs to the upper one.
     pub(super) fn locate(&self, x: f64) -> (usize, f64) {
-        let scaled = (x / self.size).clamp(0.0, self.elements as f64);
-        let element = (scaled as usize).min(self.elements - 1);
-        (element, 2.0 * (scaled - element as f64) - 1.0)
+        let below = self.edges.partition_point(|edge| *edge <= x);
+        let element = below.saturating_sub(1).min(self.element_count() - 1);
+        let (low, high) = (self.edges[element], self.edges[element + 1]);
+        let x = x.clamp(low, high);
+        (element, ((x - low) - (high - x)) / (high - low))
     }
 
     /// Value in an element of what has the given values at its nodes.

@@ -21,6 +21,9 @@ pub use problem::{SoilEnd, SoilProblem};
 /// and the drag of the nodes is not the only thing that couples the phases, so something must be left.
 const STEP_FRACTION: f64 = 0.7;
 
+/// Elements merge when the pore pressure has spread over this many of the merged ones, squared.
+const MERGER: f64 = 1.0;
+
 /// Resolution of the consolidation: relative error of the stresses below 1e-7 in report 18-2's large-strain benchmark.
 const CONSOLIDATION: Resolution = Resolution {
     elements: 32,
@@ -77,13 +80,15 @@ pub struct LagrangianSoil<L> {
     resolution: Resolution,
     operator: Operator,
     integrator: Exponential,
+    /// How often the elements at drained ends are halved now.
+    level: usize,
     time: f64,
     fields: Fields,
     /// The same problem with half the elements, once an estimate was asked for.
     coarse: Option<Box<LagrangianSoil<L>>>,
 }
 
-impl<L: UniaxialLaw> LagrangianSoil<L> {
+impl<L: UniaxialLaw + Clone> LagrangianSoil<L> {
     /// The solution of `problem` with the given `resolution`, at time 0.
     ///
     /// # Errors
@@ -91,7 +96,8 @@ impl<L: UniaxialLaw> LagrangianSoil<L> {
     /// not positive.
     pub fn new(problem: SoilProblem<L>, resolution: Resolution) -> Result<Self, ReferenceError> {
         problem.check()?;
-        let operator = Operator::new(&problem, resolution.check()?)?;
+        let level = problem.levels;
+        let operator = Operator::new(&problem, resolution.check()?, level)?;
         let fields = initial_fields(&problem, &operator)?;
         operator.largest_frequency(&problem.law, 0.0, &fields.displacement)?;
         let integrator = Exponential::new(operator.mesh.node_count(), operator.mesh.point_count());
@@ -100,6 +106,7 @@ impl<L: UniaxialLaw> LagrangianSoil<L> {
             resolution,
             operator,
             integrator,
+            level,
             time: 0.0,
             fields,
             coarse: None,
@@ -163,10 +170,37 @@ impl<L: UniaxialLaw> LagrangianSoil<L> {
         Ok(())
     }
 
-    /// The next kink of load or body force, s, or `time` where that comes first.
+    /// The next kink of load or body force, s, or the time to coarsen, or `time` where that comes first.
     fn next_stop(&self, time: f64) -> f64 {
         let ahead = |kink: &f64| *kink > self.time && *kink < time;
-        self.problem.kinks.iter().copied().find(ahead).unwrap_or(time)
+        let stop = self.problem.kinks.iter().copied().find(ahead).unwrap_or(time);
+        if self.level > 0 {
+            stop.min(self.merge_time())
+        } else {
+            stop
+        }
+    }
+
+    /// When the pore pressure has spread over the elements that the next merger makes, s.
+    fn merge_time(&self) -> f64 {
+        let SoilProblem {
+            height, soil, law, ..
+        } = &self.problem;
+        let halvings = i32::try_from(self.level).unwrap_or(i32::MAX) - 1;
+        let size = height / self.resolution.elements as f64 / 2.0_f64.powi(halvings);
+        MERGER * size * size / soil.consolidation_coefficient(law.stiffness(1.0))
+    }
+
+    /// Merges the finest elements, where it is time.
+    fn coarsen(&mut self) -> Result<(), ReferenceError> {
+        while self.level > 0 && self.time >= self.merge_time() {
+            self.level -= 1;
+            let coarser = Operator::new(&self.problem, self.resolution, self.level)?;
+            self.fields = coarser.transfer(&self.operator, &self.fields);
+            self.integrator = Exponential::new(coarser.mesh.node_count(), coarser.mesh.point_count());
+            self.operator = coarser;
+        }
+        Ok(())
     }
 
     /// The next step, s, of equal ones that reach `end`.
@@ -209,7 +243,7 @@ impl<L: UniaxialLaw> LagrangianSoil<L> {
     }
 }
 
-impl<L: UniaxialLaw> TwoPhaseReference for LagrangianSoil<L> {
+impl<L: UniaxialLaw + Clone> TwoPhaseReference for LagrangianSoil<L> {
     /// Marches from the last time to `time`.
     ///
     /// # Errors
@@ -218,11 +252,13 @@ impl<L: UniaxialLaw> TwoPhaseReference for LagrangianSoil<L> {
     fn advance(&mut self, time: f64) -> Result<(), ReferenceError> {
         check::time(time)?;
         if time < self.time {
-            self.fields = initial_fields(&self.problem, &self.operator)?;
-            self.time = 0.0;
+            let coarse = self.coarse.take();
+            *self = Self::new(self.problem.clone(), self.resolution)?;
+            self.coarse = coarse;
         }
         while self.time < time {
             self.march(self.next_stop(time))?;
+            self.coarsen()?;
         }
         self.check_state()
     }

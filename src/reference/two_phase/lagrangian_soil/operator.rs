@@ -31,12 +31,17 @@ pub(super) struct Loads {
 
 impl Operator {
     /// The equations of `problem` on the mesh of `resolution`, both of them checked.
-    pub(super) fn new<L>(problem: &SoilProblem<L>, resolution: Resolution) -> Result<Self, ReferenceError> {
-        let mesh = Mesh::new(problem.height, resolution);
+    pub(super) fn new<L>(
+        problem: &SoilProblem<L>,
+        resolution: Resolution,
+        level: usize,
+    ) -> Result<Self, ReferenceError> {
+        let refined = problem.ends.map(|end| end == SoilEnd::Drained);
+        let mesh = Mesh::new(problem.height, resolution, refined, level);
         let soil = problem.soil;
         let mut solid_mass = vec![0.0; mesh.node_count()];
-        for first in mesh.first_nodes() {
-            for (mass, weight) in solid_mass[first..].iter_mut().zip(mesh.weights()) {
+        for (element, first) in mesh.first_nodes().enumerate() {
+            for (mass, weight) in solid_mass[first..].iter_mut().zip(mesh.weights(element)) {
                 *mass += weight * soil.solid_fraction() * soil.solid_density;
             }
         }
@@ -99,9 +104,11 @@ impl Operator {
             {
                 *mixed = (1.0 - n) * solid + n * liquid;
             }
-            let strains = self.mesh.derivatives(&fields.displacement[nodes.clone()]);
-            let inflows = self.mesh.derivatives(mixed);
-            for (q, ((strain, inflow), weight)) in strains.zip(inflows).zip(self.mesh.weights()).enumerate() {
+            let strains = self.mesh.derivatives(index, &fields.displacement[nodes.clone()]);
+            let inflows = self.mesh.derivatives(index, mixed);
+            for (q, ((strain, inflow), weight)) in
+                strains.zip(inflows).zip(self.mesh.weights(index)).enumerate()
+            {
                 let (stretch, point) = (1.0 + strain, points.start + q);
                 if !is_sound(stretch) {
                     return Err(self.invalid_stretch(point, stretch, loads.time));
@@ -154,9 +161,10 @@ impl Operator {
     ) -> Result<f64, ReferenceError> {
         let mut largest = 0.0_f64;
         for (index, first) in self.mesh.first_nodes().enumerate() {
+            let mut fastest = 0.0_f64;
             let strains = self
                 .mesh
-                .derivatives(&displacement[first..first + self.mesh.width()]);
+                .derivatives(index, &displacement[first..first + self.mesh.width()]);
             for (q, strain) in strains.enumerate() {
                 let stretch = 1.0 + strain;
                 if !is_sound(stretch) {
@@ -166,10 +174,11 @@ impl Operator {
                 if !is_sound(stiffness) {
                     return Err(ReferenceError::NotHyperbolic { stretch, stiffness });
                 }
-                largest = largest.max(self.fast_speed_squared(stretch, stiffness));
+                fastest = fastest.max(self.fast_speed_squared(stretch, stiffness));
             }
+            largest = largest.max(self.mesh.largest_wave_number(index) * fastest.sqrt());
         }
-        Ok(self.mesh.largest_wave_number() * largest.sqrt())
+        Ok(largest)
     }
 
     /// Square of the speed of the faster wave without drag, m2/s2: the larger root of `det(C - c^2 M)` with the masses
@@ -182,6 +191,35 @@ impl Operator {
         let half = 0.5 * (locked * n * n / liquid + (locked * (1.0 - n).powi(2) + stiffness) / solid);
         let product = locked * n * n * stiffness / (liquid * solid);
         half + (half * half - product).max(0.0).sqrt()
+    }
+
+    /// The `fields` of the mesh of `other` on this one.
+    pub(super) fn transfer(&self, other: &Self, fields: &Fields) -> Fields {
+        let mut out = Fields::zeros(self.mesh.node_count(), self.mesh.point_count());
+        for node in 0..self.mesh.node_count() {
+            let [displacement, solid, liquid] = other.nodal(fields, self.mesh.node(node));
+            out.displacement[node] = displacement;
+            out.solid[node] = solid;
+            out.liquid[node] = liquid;
+        }
+        for (point, pressure) in out.pressure.iter_mut().enumerate() {
+            let (element, xi) = other.mesh.locate(self.mesh.point(point));
+            let first = element * self.mesh.width();
+            *pressure = other
+                .mesh
+                .interpolate(xi, &fields.pressure[first..first + self.mesh.width()]);
+        }
+        out
+    }
+
+    /// Displacement and velocities of solid and liquid at the height `x`.
+    fn nodal(&self, fields: &Fields, x: f64) -> [f64; 3] {
+        let (element, xi) = self.mesh.locate(x);
+        let first = element * (self.mesh.width() - 1);
+        [&fields.displacement, &fields.solid, &fields.liquid].map(|values| {
+            self.mesh
+                .interpolate(xi, &values[first..first + self.mesh.width()])
+        })
     }
 
     /// Relative L2 norm of the difference to the state `other` of each of these `fields`, of effective stress and pore
@@ -214,7 +252,10 @@ impl Operator {
         let (nodes, points) = (first..first + width, point..point + width);
         let displacement = &fields.displacement[nodes.clone()];
         let strain = &mut [0.0; HIGHEST_DEGREE + 1];
-        for (slot, value) in strain.iter_mut().zip(self.mesh.derivatives(displacement)) {
+        for (slot, value) in strain
+            .iter_mut()
+            .zip(self.mesh.derivatives(element, displacement))
+        {
             *slot = value;
         }
         let value = |values: &[f64]| self.mesh.interpolate(xi, values);

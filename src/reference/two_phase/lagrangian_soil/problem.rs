@@ -45,6 +45,7 @@ pub struct SoilProblem<L> {
     pub(super) body_force: Function,
     /// Times at which load or body force is not smooth, s, in rising order.
     pub(super) kinks: Vec<f64>,
+    pub(super) levels: usize,
     /// Velocities of solid and liquid, m/s.
     pub(super) velocities: [Function; 2],
     /// Effective stress and pore pressure, Pa.
@@ -66,6 +67,7 @@ impl<L> SoilProblem<L> {
             pore_load: 0.0,
             body_force: zero(),
             kinks: Vec::new(),
+            levels: 0,
             velocities: [zero(), zero()],
             stresses: [zero(), zero()],
         }
@@ -124,6 +126,14 @@ impl<L> SoilProblem<L> {
         Self { kinks, ..self }
     }
 
+    /// Halves the elements at drained ends `levels` times, 0 to 30; default 0.
+    ///
+    /// For a pore pressure that jumps at a drained end at time 0: the finest elements resolve its first spreading. They
+    /// merge one by one when it has spread over the next coarser one, so that they cost little.
+    pub fn levels(self, levels: usize) -> Self {
+        Self { levels, ..self }
+    }
+
     /// Gives the initial velocities, m/s, as functions of the height above the base, m; default 0. A fixed end does not
     /// move, whatever they say there.
     pub fn initial_velocities(
@@ -160,6 +170,7 @@ impl<L: UniaxialLaw> SoilProblem<L> {
         check::positive("height", self.height)?;
         check::finite("origin", self.origin)?;
         check::finite("pore load", self.pore_load)?;
+        check::within("levels", self.levels, 0, 30)?;
         for &kink in &self.kinks {
             check::time(kink)?;
         }
