@@ -70,7 +70,7 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
             ),
             (
                 "consolidation",
-                "two phases: a loaded layer drains; exact series at small strain, from start on",
+                "two phases: a loaded layer drains; exact at small strain, converged at large strain",
             ),
             (
                 "xie-leo",

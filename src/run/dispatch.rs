@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::error::RunError;
 use super::initial::{Initial, initial};
 use crate::basis::BasisFamily;
-use crate::error::GridError;
+use crate::error::{GridError, SetupError};
 use crate::grid::Grid;
 use crate::law::{ConstitutiveLaw, Hill, LinearElastic, Logarithmic, Moduli, NeoHookean};
 use crate::method::MethodVisitor;
@@ -98,6 +98,8 @@ where
                 let particles = initial.particles.cast();
                 self.stepper(basis, reconstruction, OnePhase, particles)
             }
+            // Known at compile time: no stepper of two phases is built for a reconstruction that has none.
+            Phases::Two(_) if R::PARTICLE_MATRIX => Err(SetupError::OnePhaseOnly.into()),
             Phases::Two(soil) => {
                 let mut particles = initial.particles.cast();
                 particles.phase = initial.liquid.iter().map(cast_liquid).collect();

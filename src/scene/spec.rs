@@ -282,12 +282,12 @@ pub enum ReferenceSpec {
         /// Column at rest or in motion.
         against: Against,
     },
-    /// `consolidation`, two phases: a layer on a fixed base under a load at its drained top. Its state at `start` is also
-    /// the initial state of the body.
+    /// `consolidation`, two phases: a layer on a fixed base under a load at its drained top; exact at small strain, converged
+    /// at large strain. Its state at `start` is also the initial state of the body.
     Consolidation {
         /// Load on the top (Pa), not 0, negative in compression.
         load: f64,
-        /// Time (s) of the solution at which the run starts.
+        /// Time (s) of the solution at which the run starts; 0 at large strain.
         start: f64,
     },
     /// `xie-leo`, two phases: the same at large strain without inertia, for the logarithmic law and permeability exponent 2.

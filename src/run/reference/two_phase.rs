@@ -1,11 +1,13 @@
 //! References of two phases.
 
 use super::super::error::RunError;
+use super::neo_hookean;
 use crate::phase::TwoPhase;
 use crate::reference::two_phase::{
-    Consolidation, SaturatedColumn, Soil, StandingWave, TwoPhaseReference, XieLeo,
+    Consolidation, LagrangianSoil, SaturatedColumn, Soil, StandingWave, TwoPhaseReference, XieLeo,
 };
-use crate::scene::{Phases, ReferenceSpec, Scene};
+use crate::reference::{Hill, Logarithmic, UniaxialLaw};
+use crate::scene::{Law, Phases, ReferenceSpec, Scene};
 
 type Built = Result<Option<Box<dyn TwoPhaseReference>>, RunError>;
 
@@ -17,8 +19,18 @@ pub(super) fn solution(scene: &Scene, reference: ReferenceSpec, origin: f64, hei
     let (soil, modulus) = (soil(&phases), scene.material.law.youngs_modulus());
     Ok(match reference {
         ReferenceSpec::Consolidation { load, .. } => {
-            let layer = Consolidation::new(height, modulus, load, soil)?;
-            Some(Box::new(layer.with_origin(origin)?))
+            let layer = Layer {
+                origin,
+                height,
+                load,
+                soil,
+            };
+            Some(match scene.material.law {
+                Law::LinearElastic { youngs_modulus } => layer.small(youngs_modulus)?,
+                Law::Hill { youngs_modulus } => layer.large(Hill { youngs_modulus })?,
+                Law::NeoHookean { youngs_modulus } => layer.large(neo_hookean(youngs_modulus))?,
+                Law::Logarithmic { youngs_modulus } => layer.large(Logarithmic { youngs_modulus })?,
+            })
         }
         ReferenceSpec::XieLeo { load } => {
             let layer = XieLeo::new(height, modulus, load, soil)?;
@@ -34,6 +46,26 @@ pub(super) fn solution(scene: &Scene, reference: ReferenceSpec, origin: f64, hei
         }
         ReferenceSpec::VibratingBar { .. } | ReferenceSpec::ColumnCompaction { .. } => None,
     })
+}
+
+/// A layer that consolidates.
+struct Layer {
+    origin: f64,
+    height: f64,
+    load: f64,
+    soil: Soil,
+}
+
+impl Layer {
+    fn small(self, modulus: f64) -> Result<Box<dyn TwoPhaseReference>, RunError> {
+        let layer = Consolidation::new(self.height, modulus, self.load, self.soil)?;
+        Ok(Box::new(layer.with_origin(self.origin)?))
+    }
+
+    fn large<L: UniaxialLaw + Clone + 'static>(self, law: L) -> Result<Box<dyn TwoPhaseReference>, RunError> {
+        let layer = LagrangianSoil::consolidation(self.height, self.load, self.soil, law)?;
+        Ok(Box::new(layer.with_origin(self.origin)?))
+    }
 }
 
 fn soil(phases: &TwoPhase<f64>) -> Soil {
