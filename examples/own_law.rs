@@ -1,5 +1,8 @@
 //! A constitutive law of your own: Hencky's logarithmic law, in one file.
 //!
+//! The library has the law too, as a rate without a state ([`materialpoint::law::Logarithmic`]); this one remembers its strain,
+//! to show how a law does that.
+//!
 //! `cargo run --release --example own_law`
 
 use std::error::Error;

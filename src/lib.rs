@@ -9,8 +9,8 @@
 //! |---|---|---|
 //! | [`BasisFamily`](basis::BasisFamily) | which DOFs a point sees | [`Linear`](basis::Linear), [`DualDomain`](basis::DualDomain), [`BSpline`](basis::BSpline) |
 //! | [`Reconstruction`](reconstruction::Reconstruction) | how particle data become integrals | [`Shepard`](reconstruction::Shepard), [`Taylor`](reconstruction::Taylor), [`RelaxedTaylor`](reconstruction::RelaxedTaylor), [`CubicSpline`](reconstruction::CubicSpline) |
-//! | [`ConstitutiveLaw`](law::ConstitutiveLaw) | how stress follows strain | [`LinearElastic`](law::LinearElastic), [`Hill`](law::Hill), [`NeoHookean`](law::NeoHookean) |
-//! | [`Phase`](phase::Phase) | what shares the pores with the solid | [`OnePhase`](phase::OnePhase) |
+//! | [`ConstitutiveLaw`](law::ConstitutiveLaw) | how stress follows strain | [`LinearElastic`](law::LinearElastic), [`Hill`](law::Hill), [`NeoHookean`](law::NeoHookean), [`Logarithmic`](law::Logarithmic) |
+//! | [`Phase`](phase::Phase) | what shares the pores with the solid | [`OnePhase`](phase::OnePhase), [`TwoPhase`](phase::TwoPhase) |
 //!
 //! One [`Stepper`](stepper::Stepper) is generic over all four, over the [`Scalar`](scalar::Scalar) and over the dimension.
 //! The weak form needs integrals such as $\int\sigma\nabla\phi_i$; a reconstruction streams points with weighted values,

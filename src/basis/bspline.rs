@@ -75,6 +75,12 @@ macro_rules! degree {
                 cells + $degree
             }
 
+            /// The Greville abscissa: the mean of the function's inner knots.
+            fn interpolation_point(&self, cells: usize, dof: usize) -> T {
+                let knots = (dof + 1..=dof + $degree).map(|k| k.saturating_sub($degree).min(cells));
+                T::count(knots.sum()) / T::count($degree)
+            }
+
             #[inline(always)]
             fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, $width> {
                 let (value, slope) = if all_knots_distinct($degree, cells, cell) {

@@ -5,11 +5,13 @@
 
 mod bspline;
 mod dual_domain;
+mod interpolant;
 mod linear;
 pub mod tensor;
 
 pub use bspline::BSpline;
 pub use dual_domain::DualDomain;
+pub use interpolant::Interpolant;
 pub use linear::Linear;
 pub use tensor::{AxisFamily, Row};
 
@@ -62,6 +64,19 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone {
         f: impl FnMut(usize, T, SVector<T, D>),
     ) {
         self.for_each(grid, cell, x, f);
+    }
+
+    /// Where (m) the value that belongs to a DOF is taken when a field is interpolated ([`Interpolant`]): the node, or the
+    /// Greville abscissa of a spline. Unless told otherwise the points are spread evenly along each axis.
+    fn interpolation_point(&self, grid: &Grid<T, D>, mut dof: usize) -> SVector<T, D> {
+        let shape = self.dofs(grid);
+        SVector::from_fn(|axis, _| {
+            let along = dof % shape[axis];
+            dof /= shape[axis];
+            let intervals = shape[axis].saturating_sub(1).max(1);
+            let whole = grid.max()[axis] - grid.min()[axis];
+            grid.min()[axis] + whole * (T::count(along) / T::count(intervals))
+        })
     }
 
     /// Total number of DOFs.

@@ -24,6 +24,29 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
     /// Values and slopes in `cell` at `unit` (0 at the cell's left edge, 1 at its right one). Where fewer
     /// than `W` functions exist, the spare entries repeat a DOF with zero value and slope.
     fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, W>;
+
+    /// Where, in cell sizes from the axis's lower end, the value that belongs to `dof` is taken when a field is interpolated:
+    /// the node, or the Greville abscissa of a spline. Unless told otherwise the points are spread evenly.
+    fn interpolation_point(&self, cells: usize, dof: usize) -> T {
+        let intervals = self.dofs_on_axis(cells).saturating_sub(1).max(1);
+        T::count(dof) * T::count(cells) / T::count(intervals)
+    }
+}
+
+/// Point of `dof` in the product of `family` with itself.
+pub fn interpolation_point<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
+    family: &A,
+    grid: &Grid<T, D>,
+    mut dof: usize,
+) -> SVector<T, D> {
+    let (shape, cells) = (dofs(family, grid), grid.cells());
+    SVector::from_fn(|axis, _| {
+        let along = dof % shape[axis];
+        dof /= shape[axis];
+        let whole = grid.max()[axis] - grid.min()[axis];
+        let point = family.interpolation_point(cells[axis], along);
+        grid.min()[axis] + whole * (point / T::count(cells[axis]))
+    })
 }
 
 /// DOFs along each axis of the product of `family` with itself.
@@ -130,6 +153,14 @@ macro_rules! tensor_product_family {
 
             fn dofs(&self, grid: &$crate::grid::Grid<T, D>) -> [usize; D] {
                 $crate::basis::tensor::dofs::<T, D, $width, _>(self, grid)
+            }
+
+            fn interpolation_point(
+                &self,
+                grid: &$crate::grid::Grid<T, D>,
+                dof: usize,
+            ) -> ::nalgebra::SVector<T, D> {
+                $crate::basis::tensor::interpolation_point::<T, D, $width, _>(self, grid, dof)
             }
 
             #[inline(always)]

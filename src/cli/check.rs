@@ -1,7 +1,8 @@
 //! `materialpoint check`.
 
-use materialpoint::run::{MethodSummary, critical_step, simulation};
-use materialpoint::scene::{ReconstructionKind, Scene, StepSize};
+use materialpoint::run::{MethodSummary, critical_step, mechanism, simulation};
+use materialpoint::scene::StepSize;
+use materialpoint::stepper::Mechanism;
 use serde_json::json;
 
 use super::Shared;
@@ -9,23 +10,43 @@ use super::failure::Failure;
 use super::print::{print, print_json};
 use super::run::load;
 
+/// What a particle carries.
+const ONE_PHASE: [&str; 7] = [
+    "initial position",
+    "position",
+    "displacement",
+    "velocity",
+    "stress",
+    "mass",
+    "volume",
+];
+
+/// The same with a liquid in the pores.
+const TWO_PHASES: [&str; 9] = [
+    "initial position",
+    "position",
+    "displacement",
+    "velocity of the solid",
+    "effective stress",
+    "mass of the solid",
+    "volume",
+    "velocity of the liquid",
+    "pore pressure",
+];
+
 pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     let scene = load(name, &shared.set)?;
     let built = simulation(&scene)?;
     let limit = critical_step(&scene)?;
     let critical = limit.map(|limit| limit.step);
     let method = MethodSummary::of(&scene);
-    let mechanism = mechanism(&scene);
-    let unknowns = scene.dimension();
-    let fields = [
-        "initial position",
-        "position",
-        "displacement",
-        "velocity",
-        "stress",
-        "mass",
-        "volume",
-    ];
+    let mechanism = mechanism(&scene, limit.map_or(Mechanism::Wave, |limit| limit.mechanism));
+    let phases = scene.material.phases.count();
+    let unknowns = scene.dimension() * phases;
+    let fields = match phases {
+        1 => &ONE_PHASE[..],
+        _ => &TWO_PHASES,
+    };
     let asked = match scene.time.step {
         StepSize::Fixed(step) => step,
         StepSize::Auto { safety } => critical.map_or(f64::NAN, |limit| safety * limit),
@@ -53,8 +74,12 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
         fields.join(", ")
     ));
     lines.push(format!(
-        "  DOFs          {}, {unknowns} velocity component each",
-        built.dof_count()
+        "  DOFs          {}, {unknowns} velocity {} each",
+        built.dof_count(),
+        match phases {
+            1 => "component",
+            _ => "components (solid and liquid)",
+        }
     ));
     lines.push(format!(
         "  memory        {:.0} bytes per particle, {:.3} MB in all",
@@ -75,20 +100,4 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
         None => lines.push("  stable step   any: nothing resists a motion of these particles".to_owned()),
     }
     print(&(lines.join("\n") + "\n"))
-}
-
-/// What limits the step: in one phase always the wave; how fast it may be depends on the masses.
-fn mechanism(scene: &Scene) -> String {
-    let method = &scene.method;
-    let masses = match method.reconstruction {
-        ReconstructionKind::RelaxedTaylor => "consistent mass in velocity and acceleration".to_owned(),
-        _ => format!(
-            "{} mass in the velocity, lumped in the acceleration",
-            method.velocity_mass.name()
-        ),
-    };
-    format!(
-        "an elastic wave crossing a cell: {} basis, {masses}",
-        method.basis.name()
-    )
 }

@@ -44,9 +44,19 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
                 "strain = \"small\": Hooke; strain = \"large\": Hill's rate",
             ),
             ("neo-hookean", "strain = \"large\": compressible neo-Hookean"),
+            ("logarithmic", "strain = \"large\": stress E ln J, 1-D"),
         ],
     ),
-    ("phases (material.phases)", &[("1", "a dry solid")]),
+    (
+        "phases (material.phases)",
+        &[
+            ("1", "a dry solid"),
+            (
+                "2",
+                "a saturated solid: solid and pore liquid with velocities of their own (v-w), 1-D",
+            ),
+        ],
+    ),
     (
         "references ([reference])",
         &[
@@ -57,6 +67,22 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
             (
                 "column-compaction",
                 "against = \"static\" or \"dynamic\" (converged)",
+            ),
+            (
+                "consolidation",
+                "two phases: a loaded layer drains; exact at small strain, converged at large strain",
+            ),
+            (
+                "xie-leo",
+                "two phases: the same at large strain, exact without inertia (logarithmic)",
+            ),
+            (
+                "standing-wave",
+                "two phases: damped wave between walls, exact at small strain",
+            ),
+            (
+                "self-weight",
+                "two phases: saturated column at rest under its weight, small strain",
             ),
         ],
     ),

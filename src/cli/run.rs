@@ -32,10 +32,18 @@ pub(super) fn run_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     progress_bar.finish_and_clear();
     let mut outcome = outcome?;
     outcome.files.push(write_fields(&outcome, &folder)?);
+    warn(&outcome.summary.warnings);
     if shared.json {
         return print_json(&outcome.summary);
     }
     print(&summary_text(&outcome))
+}
+
+/// Warnings go to standard error, so that standard output stays what was asked for.
+pub(super) fn warn(warnings: &[String]) {
+    for warning in warnings {
+        eprintln!("materialpoint: warning: {warning}");
+    }
 }
 
 /// The summary for people.
@@ -57,16 +65,18 @@ fn summary_text(outcome: &Outcome) -> String {
         errors,
         conservation,
         energy,
+        warnings: _,
     } = &outcome.summary;
     let mut lines = vec![title.clone()];
     lines.push(format!(
-        "  method        {} (degree {}) + {}, {} velocity mass, {} strain, {}",
+        "  method        {} (degree {}) + {}, {} velocity mass, {} strain, {}{}",
         method.basis,
         method.degree,
         method.reconstruction,
         method.velocity_mass,
         method.strain,
-        method.scalar
+        method.scalar,
+        if method.phases == 1 { "" } else { ", two phases" }
     ));
     lines.push(format!(
         "  model         {particles} particles, {cells} cells, {dofs} DOFs"
@@ -81,15 +91,16 @@ fn summary_text(outcome: &Outcome) -> String {
     lines.push(format!(
         "  crossings     {grid_crossings} of cell edges; at most {reduced_cells} cells a step fitted with fewer functions"
     ));
+    let width = errors.keys().map(|field| field.len()).fold(13, usize::max);
     for (field, norms) in errors {
         lines.push(format!(
-            "  {field:<13} error: relative L2 {:.3e}, RMS {:.3e}, largest {:.3e}",
+            "  {field:<width$} error: relative L2 {:.3e}, RMS {:.3e}, largest {:.3e}",
             norms.relative_l2, norms.rms, norms.max
         ));
     }
     for (phase, errors) in conservation {
         lines.push(format!(
-            "  {phase:<13} conservation error: mass {:.1e}, momentum {:.1e} ({:.1e} of sum m|v|)",
+            "  {phase:<width$} conservation error: mass {:.1e}, momentum {:.1e} ({:.1e} of sum m|v|)",
             errors.mass, errors.momentum, errors.momentum_scaled
         ));
     }

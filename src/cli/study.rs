@@ -10,7 +10,7 @@ use serde_json::json;
 use super::bar::bar;
 use super::failure::Failure;
 use super::print::{print, print_json};
-use super::run::load;
+use super::run::{load, warn};
 use super::{Shared, StudyFlags};
 
 /// Scene of the default study.
@@ -30,7 +30,7 @@ pub(super) fn study_scene(name: &str, shared: &Shared, flags: &StudyFlags) -> Re
 }
 
 fn report(scene: &Scene, shared: &Shared, flags: &StudyFlags, cells: &[usize]) -> Result<(), Failure> {
-    let plan = plan(flags, cells)?;
+    let plan = plan(scene, flags, cells)?;
     let folder = Folder::create(&shared.out)?;
     let progress_bar = bar(
         shared.quiet,
@@ -43,6 +43,9 @@ fn report(scene: &Scene, shared: &Shared, flags: &StudyFlags, cells: &[usize]) -
     });
     progress_bar.finish_and_clear();
     let done = done?;
+    let mut warnings: Vec<String> = done.rows.iter().flat_map(warnings).collect();
+    warnings.dedup();
+    warn(&warnings);
     let files = write_files(&done, &scene.title, &folder)?;
     if shared.json {
         return print_json(&json!({ "rows": done.rows }));
@@ -54,7 +57,7 @@ fn report(scene: &Scene, shared: &Shared, flags: &StudyFlags, cells: &[usize]) -
     print(&text)
 }
 
-fn plan(flags: &StudyFlags, default_cells: &[usize]) -> Result<Plan, Failure> {
+fn plan(scene: &Scene, flags: &StudyFlags, default_cells: &[usize]) -> Result<Plan, Failure> {
     let mut cells = if flags.cells.is_empty() {
         default_cells.to_vec()
     } else {
@@ -71,17 +74,31 @@ fn plan(flags: &StudyFlags, default_cells: &[usize]) -> Result<Plan, Failure> {
         ));
     }
     Ok(Plan {
-        methods: methods(&flags.methods)?,
+        methods: methods(scene, &flags.methods)?,
         cells,
         repeat: flags.repeat,
     })
 }
 
-fn methods(list: &str) -> Result<Vec<Method>, Failure> {
+fn methods(scene: &Scene, list: &str) -> Result<Vec<Method>, Failure> {
+    let one_phase = scene.material.phases.count() == 1;
     if list == "all" {
-        return Ok(Method::ALL.to_vec());
+        return Ok(match one_phase {
+            true => Method::ALL.to_vec(),
+            false => Method::NINE.to_vec(),
+        });
     }
-    list.split(',').map(|name| method(name.trim())).collect()
+    let methods: Vec<_> = list
+        .split(',')
+        .map(|name| method(name.trim()))
+        .collect::<Result<_, _>>()?;
+    let relaxed = |method: &&Method| method.reconstruction == ReconstructionKind::RelaxedTaylor;
+    match methods.iter().find(relaxed) {
+        Some(method) if !one_phase => Err(Failure::Input(format!(
+            "--methods: {method} knows one phase only so far; with material.phases = 2 write shepard, taylor or spline"
+        ))),
+        _ => Ok(methods),
+    }
 }
 
 /// Any pair of a known basis and a known reconstruction.
@@ -106,27 +123,26 @@ fn method(name: &str) -> Result<Method, Failure> {
         })
 }
 
+/// The warnings of a row, with its name.
+fn warnings(row: &Row) -> Vec<String> {
+    let named = |warning| format!("{}, {} cells: {warning}", row.method, row.cells);
+    row.warnings.iter().map(named).collect()
+}
+
 /// The report for people: a table, what its columns mean, and a sentence to act on.
 fn report_text(study: &Study, scene: &Scene) -> String {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING);
     table.set_style(TableComponent::HeaderLines, '─');
     table.set_style(TableComponent::MiddleHeaderIntersections, '─');
-    table.set_header([
-        "method",
-        "cells",
-        "stress error",
-        "order",
-        "u error",
-        "time [s]",
-        "Mps/s",
-        "crossings",
-        "mass",
-        "momentum",
-        "front",
-    ]);
+    let mut header = vec!["method", "cells", "stress error", "order", "u error"];
+    if study.phases > 1 {
+        header.push("p error");
+    }
+    header.extend(["time [s]", "Mps/s", "crossings", "mass", "momentum", "front"]);
+    table.set_header(header);
     for row in &study.rows {
-        table.add_row(cells_of(row));
+        table.add_row(cells_of(row, study.phases));
     }
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
@@ -145,43 +161,58 @@ fn report_text(study: &Study, scene: &Scene) -> String {
         .collect();
     format!(
         "{}\n\n{table}\n\
-         stress, u error: relative L2 against the reference; order: of the stress error; Mps/s: million particle\n\
+         {}: relative L2 against the reference; order: of the stress error; Mps/s: million particle\n\
          steps per second; mass, momentum: largest conservation error; front: no other row is faster and more accurate\n\
          \n{stopped}{}\n",
         scene.title,
-        recommendation(&study.rows, 0.01)
+        match study.phases {
+            1 => "stress, u error",
+            _ => "effective stress, solid u, pore pressure error",
+        },
+        recommendation(study, 0.01)
     )
 }
 
-fn cells_of(row: &Row) -> [String; 11] {
+fn cells_of(row: &Row, phases: usize) -> Vec<String> {
     let error = |field| {
         row.errors
             .get(field)
             .map_or_else(|| "-".into(), |n| format!("{:.2e}", n.relative_l2))
     };
+    let (stress, displacement) = match phases {
+        1 => ("stress", "displacement"),
+        _ => ("effective_stress", "solid_displacement"),
+    };
     let order = row
         .orders
-        .get("stress")
+        .get(stress)
         .map_or_else(String::new, |order| format!("{order:.1}"));
-    let solid = row.conservation.get("solid");
+    // The worse of the phases.
     let kept = |pick: fn(&materialpoint::run::ConservationSummary) -> f64| {
-        solid.map_or_else(|| "-".into(), |errors| format!("{:.0e}", pick(errors)))
+        let worst = row.conservation.values().map(pick).reduce(f64::max);
+        worst.map_or_else(|| "-".into(), |error| format!("{error:.0e}"))
     };
-    [
+    let mut cells = vec![
         row.method.literature_name(),
         row.cells.to_string(),
         if row.stopped.is_some() {
             "stopped".into()
         } else {
-            error("stress")
+            error(stress)
         },
         order,
-        error("displacement"),
+        error(displacement),
+    ];
+    if phases > 1 {
+        cells.push(error("pore_pressure"));
+    }
+    cells.extend([
         format!("{:.3}", row.wall_seconds),
         format!("{:.1}", row.particle_steps_per_second / 1e6),
         row.grid_crossings.to_string(),
         kept(|errors| errors.mass),
         kept(|errors| errors.momentum),
         if row.on_front { "*".into() } else { String::new() },
-    ]
+    ]);
+    cells
 }

@@ -2,11 +2,13 @@
 
 mod hill;
 mod linear_elastic;
+mod logarithmic;
 mod moduli;
 mod neo_hookean;
 
 pub use hill::Hill;
 pub use linear_elastic::LinearElastic;
+pub use logarithmic::Logarithmic;
 pub use moduli::Moduli;
 pub use neo_hookean::{DeformationGradient, NeoHookean};
 

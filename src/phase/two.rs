@@ -75,6 +75,21 @@ pub struct TwoPhase<T> {
 }
 
 impl<T: Scalar> TwoPhase<T> {
+    /// The same phases in another scalar.
+    pub fn cast<U: Scalar>(&self) -> TwoPhase<U> {
+        let cast = |value: T| U::lit(value.primal());
+        TwoPhase {
+            porosity: cast(self.porosity),
+            solid_density: cast(self.solid_density),
+            liquid_density: cast(self.liquid_density),
+            liquid_bulk_modulus: cast(self.liquid_bulk_modulus),
+            permeability: cast(self.permeability),
+            permeability_exponent: cast(self.permeability_exponent),
+            gravity: cast(self.gravity),
+            drag: self.drag,
+        }
+    }
+
     /// Mass density (kg/m3) of the dry solid, pores included: that of the particles' mass.
     pub fn dry_density(&self) -> T {
         (T::one() - self.porosity) * self.solid_density

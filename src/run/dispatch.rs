@@ -5,24 +5,23 @@ use nalgebra::SVector;
 use super::error::RunError;
 use super::initial::{Initial, initial};
 use crate::basis::BasisFamily;
-use crate::error::GridError;
+use crate::error::{GridError, SetupError};
 use crate::grid::Grid;
-use crate::law::{ConstitutiveLaw, Hill, LinearElastic, Moduli, NeoHookean};
+use crate::law::{ConstitutiveLaw, Hill, LinearElastic, Logarithmic, Moduli, NeoHookean};
 use crate::method::MethodVisitor;
-use crate::phase::OnePhase;
+use crate::particles::Particles;
+use crate::phase::{OnePhase, Phase, PoreLiquid, TwoPhase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::scene::{Law, ScalarKind, Scene};
+use crate::scene::{Law, Phases, ScalarKind, Scene};
 use crate::stepper::{Setup, Simulation, Stepper};
 
 /// Builds the stepper a scene asks for.
 pub(super) fn build(scene: &Scene) -> Result<Box<dyn Simulation<1>>, RunError> {
     let grid = grid(scene)?;
-    let Initial { particles, surface } = initial(scene, &grid)?;
     let start = Start {
         scene,
-        particles,
-        surface,
+        initial: initial(scene, &grid)?,
     };
     match scene.method.scalar {
         ScalarKind::F64 => start.with_scalar::<f64>(),
@@ -38,8 +37,7 @@ fn grid<T: Scalar>(scene: &Scene) -> Result<Grid<T, 1>, GridError> {
 
 struct Start<'a> {
     scene: &'a Scene,
-    particles: crate::particles::Particles<f64, 1>,
-    surface: Vec<crate::stepper::SurfacePoint<f64>>,
+    initial: Initial,
 }
 
 impl Start<'_> {
@@ -57,6 +55,10 @@ impl Start<'_> {
             Law::NeoHookean { youngs_modulus } => {
                 let moduli = uniaxial(youngs_modulus)?;
                 self.with_law(NeoHookean { moduli })
+            }
+            Law::Logarithmic { youngs_modulus } => {
+                let moduli = uniaxial(youngs_modulus)?;
+                self.with_law(Logarithmic { moduli })
             }
         }
     }
@@ -90,22 +92,57 @@ where
         B: BasisFamily<T, 1> + Send + 'static,
         R: Reconstruction<T, 1> + Clone + Send + 'static,
     {
-        let Start {
-            scene,
-            particles,
-            surface,
-        } = self.start;
-        let surface = surface.iter().map(|point| point.cast()).collect();
+        let Start { scene, initial } = &self.start;
+        match scene.material.phases {
+            Phases::One { .. } => {
+                let particles = initial.particles.cast();
+                self.stepper(basis, reconstruction, OnePhase, particles)
+            }
+            // Known at compile time: no stepper of two phases is built for a reconstruction that has none.
+            Phases::Two(_) if R::PARTICLE_MATRIX => Err(SetupError::OnePhaseOnly.into()),
+            Phases::Two(soil) => {
+                let mut particles = initial.particles.cast();
+                particles.phase = initial.liquid.iter().map(cast_liquid).collect();
+                let phase: TwoPhase<T> = soil.cast();
+                self.stepper(basis, reconstruction, phase, particles)
+            }
+        }
+    }
+}
+
+impl<L> WithLaw<'_, L> {
+    fn stepper<T, B, R, P>(
+        self,
+        basis: B,
+        reconstruction: R,
+        phase: P,
+        particles: Particles<T, 1, L::State, P::Particle>,
+    ) -> Result<Box<dyn Simulation<1>>, RunError>
+    where
+        T: Scalar,
+        B: BasisFamily<T, 1> + 'static,
+        R: Reconstruction<T, 1> + Clone + 'static,
+        L: ConstitutiveLaw<T, 1> + Clone + 'static,
+        P: Phase<T, 1> + Clone + 'static,
+    {
+        let Start { scene, initial } = self.start;
         let stepper = Stepper::new(Setup {
             grid: grid(scene)?,
             basis,
             reconstruction,
             law: self.law,
-            phase: OnePhase,
+            phase,
             velocity_mass: scene.method.velocity_mass,
-            particles: particles.cast(),
-            surface,
+            particles,
+            surface: initial.surface.iter().map(|point| point.cast()).collect(),
         })?;
         Ok(Box::new(stepper))
+    }
+}
+
+fn cast_liquid<T: Scalar>(liquid: &PoreLiquid<f64, 1>) -> PoreLiquid<T, 1> {
+    PoreLiquid {
+        velocity: liquid.velocity.map(T::lit),
+        pressure: T::lit(liquid.pressure),
     }
 }

@@ -35,7 +35,7 @@ pub enum RunError {
     )]
     NoCriticalStep,
     /// The run stopped on the way.
-    #[error("{source}; {}", advice(*dt, *critical))]
+    #[error("{source}; {}", advice(*dt, *critical, remedy))]
     Stopped {
         /// What happened, at which step, to which particle.
         source: StepError,
@@ -43,13 +43,15 @@ pub enum RunError {
         dt: f64,
         /// Largest stable step of the initial layout (s), if it could be found.
         critical: Option<f64>,
+        /// What helps against a step above it, besides a smaller one.
+        remedy: &'static str,
     },
 }
 
-fn advice(dt: f64, critical: Option<f64>) -> String {
+fn advice(dt: f64, critical: Option<f64>, remedy: &str) -> String {
     match critical {
         Some(limit) if dt > limit => format!(
-            "the run is unstable: time.step = {dt:.3e} s is above the largest stable step, {limit:.3e} s, so take a smaller one or \"auto\""
+            "the run is unstable: time.step = {dt:.3e} s is above the largest stable step, {limit:.3e} s, so take a smaller one or \"auto\"{remedy}"
         ),
         Some(limit) => format!(
             "time.step = {dt:.3e} s is within the largest stable step of the initial layout, {limit:.3e} s, so look at the loads, the grid's extent and the method"

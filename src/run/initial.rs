@@ -3,41 +3,42 @@
 use nalgebra::SVector;
 
 use super::error::RunError;
-use crate::grid::{Face, Grid, Side};
+use super::state::{InitialState, set};
+use super::surface::surfaces;
+use crate::grid::Grid;
 use crate::particles::{Particles, lattice};
-use crate::scene::{Body, BoundaryKind, Scene};
+use crate::phase::PoreLiquid;
+use crate::scene::{Body, Scene};
 use crate::stepper::SurfacePoint;
 
-/// Particles and loaded surfaces.
+/// Particles, their liquid, and the surfaces that the stepper must know.
+#[derive(Default)]
 pub(super) struct Initial {
     pub(super) particles: Particles<f64, 1>,
+    /// In two phases one for each particle.
+    pub(super) liquid: Vec<PoreLiquid<f64, 1>>,
     pub(super) surface: Vec<SurfacePoint<f64>>,
 }
 
-/// Fills the bodies, gives the particles their initial values and finds the loaded surfaces.
+/// Fills the bodies, gives the particles their initial values and finds the surfaces.
 pub(super) fn initial(scene: &Scene, grid: &Grid<f64, 1>) -> Result<Initial, RunError> {
-    let mut particles = Particles::default();
-    let mut surface = Vec::new();
+    let mut all = Initial::default();
     for body in &scene.bodies {
-        let first = particles.len();
-        let filled = fill(scene, body, grid)?;
-        append(&mut particles, filled);
-        let range = first..particles.len();
-        for face in loaded_faces(scene, body) {
-            if let Some(particle) = outermost(&particles, range.clone(), face) {
-                surface.push(SurfacePoint {
-                    particle,
-                    face,
-                    area: 1.0,
-                    reach: 0.5,
-                });
-            }
-        }
+        let first = all.particles.len();
+        let (particles, liquid) = fill(scene, body, grid)?;
+        append(&mut all.particles, particles);
+        all.liquid.extend(liquid);
+        let range = first..all.particles.len();
+        all.surface.extend(surfaces(scene, body, &all.particles, range));
     }
-    Ok(Initial { particles, surface })
+    Ok(all)
 }
 
-fn fill(scene: &Scene, body: &Body, grid: &Grid<f64, 1>) -> Result<Particles<f64, 1>, RunError> {
+fn fill(
+    scene: &Scene,
+    body: &Body,
+    grid: &Grid<f64, 1>,
+) -> Result<(Particles<f64, 1>, Vec<PoreLiquid<f64, 1>>), RunError> {
     let (min, max) = (first(&body.min), first(&body.max));
     let per_cell = body.particles_per_cell.first().copied().unwrap_or(1);
     let mut points = lattice(grid, &SVector::from([min]), &SVector::from([max]), [per_cell]);
@@ -46,20 +47,20 @@ fn fill(scene: &Scene, body: &Body, grid: &Grid<f64, 1>) -> Result<Particles<f64
         // Within its own sub-interval, so that particles keep their order and the body its volume.
         x[0] += body.jitter * *spacing * (random.f64() - 0.5);
     }
-    let mut particles: Particles<f64, 1> = Particles::at_rest(&points, scene.material.density);
+    let mut particles = Particles::at_rest(&points, scene.material.solid_density());
+    let mut liquid = Vec::new();
+    let state = InitialState::new(scene, body, grid)?;
     for p in 0..particles.len() {
-        let x = [particles.position[p][0]];
-        if let Some(velocity) = body.velocity.as_ref().and_then(|v| v.first()) {
-            particles.velocity[p][0] = velocity.eval_at(&x)?;
-        }
-        if let Some(stress) = &body.stress {
-            particles.stress[p][(0, 0)] = stress.eval_at(&x)?;
+        let values = state.at(particles.position[p][0])?;
+        set(&mut particles, p, &values);
+        if scene.material.phases.count() == 2 {
+            liquid.push(values.liquid());
         }
     }
-    Ok(particles)
+    Ok((particles, liquid))
 }
 
-fn first(values: &[f64]) -> f64 {
+pub(super) fn first(values: &[f64]) -> f64 {
     values.first().copied().unwrap_or(f64::NAN)
 }
 
@@ -73,27 +74,4 @@ fn append(all: &mut Particles<f64, 1>, more: Particles<f64, 1>) {
     all.volume.extend(more.volume);
     all.state.extend(more.state);
     all.phase.extend(more.phase);
-}
-
-/// Faces with a traction that the body looks at freely: no other body touches it on that side.
-fn loaded_faces<'a>(scene: &'a Scene, body: &'a Body) -> impl Iterator<Item = Face> + 'a {
-    let tractions = scene
-        .boundaries
-        .iter()
-        .filter(|b| matches!(b.kind, BoundaryKind::Traction(_)));
-    tractions.map(|b| b.face).filter(move |face| {
-        !scene.bodies.iter().any(|other| match face.side {
-            Side::Min => other.max == body.min,
-            Side::Max => other.min == body.max,
-        })
-    })
-}
-
-fn outermost(particles: &Particles<f64, 1>, range: std::ops::Range<usize>, face: Face) -> Option<usize> {
-    let position = |p: &usize| particles.position[*p][0];
-    let by_position = |a: &usize, b: &usize| position(a).total_cmp(&position(b));
-    match face.side {
-        Side::Min => range.min_by(by_position),
-        Side::Max => range.max_by(by_position),
-    }
 }

@@ -3,8 +3,8 @@
 use nalgebra::SVector;
 
 use super::error::RunError;
-use crate::scene::{BoundaryKind, Expression, Scene};
-use crate::stepper::{FaceCondition, Forcing};
+use crate::scene::{BoundaryKind, Expression, PoreBoundary, Scene};
+use crate::stepper::{FaceCondition, Forcing, PoreCondition};
 
 /// Evaluates the scene's expressions for the step from `time` to `time + dt`: loads at its start, told
 /// velocities in its middle, where Euler-Cromer's velocity lives (but never before time zero).
@@ -15,6 +15,7 @@ pub(super) fn forcing(scene: &Scene, time: f64, dt: f64) -> Result<Forcing<f64, 
     }
     for boundary in &scene.boundaries {
         let condition = match &boundary.kind {
+            BoundaryKind::Free => FaceCondition::Free,
             BoundaryKind::Fixed => FaceCondition::fixed(),
             BoundaryKind::Velocity(velocity) => {
                 let (before, after) = ((time - dt / 2.0).max(0.0), time + dt / 2.0);
@@ -24,6 +25,12 @@ pub(super) fn forcing(scene: &Scene, time: f64, dt: f64) -> Result<Forcing<f64, 
             BoundaryKind::Traction(traction) => FaceCondition::Traction(vector(traction, time)?),
         };
         forcing.set_face(boundary.face, condition);
+        let pores = match &boundary.pores {
+            PoreBoundary::Sealed => PoreCondition::Sealed,
+            PoreBoundary::Drained => PoreCondition::Pressure(0.0),
+            PoreBoundary::Pressure(pressure) => PoreCondition::Pressure(pressure.eval_time(time)?),
+        };
+        forcing.set_pores(boundary.face, pores);
     }
     Ok(forcing)
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use super::Progress;
 use super::critical_step;
 use super::error::RunError;
+use super::limits::remedy;
 use super::loads::forcing;
 use super::particle_table::particle_table;
 use super::schedule::Schedule;
@@ -72,8 +73,13 @@ pub(super) fn march(
         let dt = schedule.size(step);
         let forcing = forcing(scene, schedule.time(step), dt)?;
         if let Err(source) = simulation.step(dt, &forcing) {
-            let critical = critical_step(scene).ok().flatten().map(|limit| limit.step);
-            return Err(RunError::Stopped { source, dt, critical });
+            let limit = critical_step(scene).ok().flatten();
+            return Err(RunError::Stopped {
+                source,
+                dt,
+                critical: limit.map(|limit| limit.step),
+                remedy: limit.map_or("", |limit| remedy(limit.mechanism)),
+            });
         }
         let done = step + 1;
         let writes = scene.output.every > 0 && done % scene.output.every == 0 && done < steps;
@@ -83,7 +89,7 @@ pub(super) fn march(
             march.energy.sample(simulation.energy().total());
             if let (true, ParticleOutput::Csv, Some(folder)) = (writes, scene.output.particles, folder) {
                 let name = format!("particles-{done:08}.csv");
-                let table = particle_table(&simulation.particles());
+                let table = particle_table(scene, simulation);
                 files.push(table.write_csv(folder, &name)?);
             }
             progress(Progress { step: done, steps });

@@ -2,16 +2,22 @@
 
 mod dispatch;
 mod error;
+mod fields;
 mod initial;
+mod limits;
 mod loads;
 mod march;
 mod norms;
 mod particle_table;
 mod reference;
 mod schedule;
+mod state;
 mod summary;
+mod surface;
 
 pub use error::RunError;
+pub use fields::FieldValues;
+pub use limits::mechanism;
 pub use norms::{ErrorNorms, Exact};
 pub use summary::{ConservationSummary, EnergySummary, MethodSummary, Summary};
 
@@ -25,6 +31,7 @@ use schedule::Schedule;
 
 use crate::output::Folder;
 use crate::particles::Particles;
+use crate::phase::PoreLiquid;
 use crate::scene::{ParticleOutput, Scene};
 use crate::stepper::{CriticalStep, Simulation};
 
@@ -44,10 +51,19 @@ pub struct Outcome {
     pub summary: Summary,
     /// Particles at the end.
     pub particles: Particles<f64, 1>,
-    /// Reference at the particles: displacement (m), velocity (m/s), stress (Pa); empty without one.
+    /// Their liquid; empty in one phase.
+    pub liquid: Vec<PoreLiquid<f64, 1>>,
+    /// Reference at the particles; empty without one.
     pub exact: Exact,
     /// Files written.
     pub files: Vec<PathBuf>,
+}
+
+impl Outcome {
+    /// Every field at the particles, with its reference.
+    pub fn fields(&self) -> Vec<FieldValues> {
+        fields::fields(&self.particles, &self.liquid, &self.exact)
+    }
 }
 
 /// Runs `scene`, writing particles to `folder` if there is one, and calls `progress` now and then.
@@ -61,6 +77,8 @@ pub fn run(
 ) -> Result<Outcome, RunError> {
     let mut simulation = build(scene)?;
     let schedule = Schedule::new(scene, simulation.as_ref())?;
+    let critical = || Ok(simulation.critical_step(&forcing(scene, 0.0, 1.0)?));
+    let warnings = limits::warnings(scene, &schedule, critical)?;
     let mut files = Vec::new();
     let march = march(
         scene,
@@ -70,16 +88,18 @@ pub fn run(
         &mut files,
         progress,
     )?;
-    let particles = simulation.particles();
     if let (ParticleOutput::Csv, Some(folder)) = (scene.output.particles, folder) {
-        files.push(particle_table(&particles).write_csv(folder, "particles.csv")?);
+        files.push(particle_table(scene, simulation.as_ref()).write_csv(folder, "particles.csv")?);
     }
+    let (particles, liquid) = (simulation.particles(), simulation.liquid());
     let exact = Exact::of(scene, &particles, &schedule)?;
-    let norms = ErrorNorms::all(&particles, &exact);
-    let summary = Summary::new(scene, simulation.as_ref(), &schedule, march, norms);
+    let norms = ErrorNorms::all(&fields::fields(&particles, &liquid, &exact));
+    let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, march, norms);
+    summary.warnings = warnings;
     Ok(Outcome {
         summary,
         particles,
+        liquid,
         exact,
         files,
     })

@@ -5,20 +5,26 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::error::RunError;
-use super::reference::solution;
+use super::fields::FieldValues;
+use super::reference::{Solution, solution};
 use super::schedule::Schedule;
 use crate::particles::Particles;
 use crate::scene::Scene;
 
-/// Reference values at the particles, in their order; empty where the scene names no reference.
+/// Reference values at the particles, in their order; empty where the scene names no reference, and those of the liquid in
+/// one phase.
 #[derive(Clone, Debug, Default)]
 pub struct Exact {
-    /// Displacement (m) at the end.
+    /// Displacement (m) of the solid at the end.
     pub displacement: Vec<f64>,
-    /// Velocity (m/s) half a step before the end, where the particles' velocity lives.
+    /// Velocity (m/s) of the solid half a step before the end, where the particles' velocity lives.
     pub velocity: Vec<f64>,
-    /// Stress (Pa) at the end.
+    /// Stress (Pa) at the end, in two phases the effective one.
     pub stress: Vec<f64>,
+    /// Velocity (m/s) of the liquid, at the time of the solid's.
+    pub liquid_velocity: Vec<f64>,
+    /// Pore pressure (Pa) at the end, tension positive.
+    pub pore_pressure: Vec<f64>,
 }
 
 impl Exact {
@@ -28,22 +34,33 @@ impl Exact {
         particles: &Particles<f64, 1>,
         schedule: &Schedule,
     ) -> Result<Self, RunError> {
-        let Some(mut solution) = solution(scene)? else {
-            return Ok(Self::default());
-        };
-        let points = || particles.initial_position.iter().map(|x| x[0]);
-        solution.advance(schedule.velocity_time())?;
-        let velocity = points().map(|x| solution.at(x).velocity).collect();
-        solution.advance(schedule.end)?;
-        let (displacement, stress) = points()
-            .map(|x| solution.at(x))
-            .map(|state| (state.displacement, state.stress))
-            .unzip();
-        Ok(Self {
-            displacement,
-            velocity,
-            stress,
-        })
+        let points: Vec<f64> = particles.initial_position.iter().map(|x| x[0]).collect();
+        let start = scene.reference.map_or(0.0, |reference| reference.start());
+        let [middle, end] = [schedule.velocity_time(), schedule.end].map(|time| start + time);
+        let mut exact = Self::default();
+        match solution(scene)? {
+            None => {}
+            Some(Solution::One(mut solution)) => {
+                solution.advance(middle)?;
+                exact.velocity = points.iter().map(|&x| solution.at(x).velocity).collect();
+                solution.advance(end)?;
+                let states = points.iter().map(|&x| solution.at(x));
+                (exact.displacement, exact.stress) = states.map(|s| (s.displacement, s.stress)).unzip();
+            }
+            Some(Solution::Two(mut solution)) => {
+                solution.advance(middle)?;
+                let states = points.iter().map(|&x| solution.at(x));
+                (exact.velocity, exact.liquid_velocity) =
+                    states.map(|s| (s.solid_velocity, s.liquid_velocity)).unzip();
+                solution.advance(end)?;
+                for state in points.iter().map(|&x| solution.at(x)) {
+                    exact.displacement.push(state.solid_displacement);
+                    exact.stress.push(state.effective_stress);
+                    exact.pore_pressure.push(state.pore_pressure);
+                }
+            }
+        }
+        Ok(exact)
     }
 }
 
@@ -79,18 +96,11 @@ impl ErrorNorms {
         }
     }
 
-    /// Errors of displacement, velocity and stress; empty without a reference.
-    pub(super) fn all(particles: &Particles<f64, 1>, exact: &Exact) -> BTreeMap<&'static str, Self> {
-        if exact.stress.is_empty() {
-            return BTreeMap::new();
-        }
-        let displacement = particles.displacement.iter().map(|u| u[0]);
-        let velocity = particles.velocity.iter().map(|v| v[0]);
-        let stress = particles.stress.iter().map(|s| s[(0, 0)]);
-        BTreeMap::from([
-            ("displacement", Self::new(displacement, &exact.displacement)),
-            ("velocity", Self::new(velocity, &exact.velocity)),
-            ("stress", Self::new(stress, &exact.stress)),
-        ])
+    /// Errors of the fields that a reference knows.
+    pub(super) fn all(fields: &[FieldValues]) -> BTreeMap<&'static str, Self> {
+        let known = fields.iter().filter(|field| !field.exact.is_empty());
+        known
+            .map(|field| (field.name, Self::new(field.values.iter().copied(), &field.exact)))
+            .collect()
     }
 }

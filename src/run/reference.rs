@@ -1,13 +1,23 @@
 //! The reference that a scene names.
 
+mod two_phase;
+
 use super::error::RunError;
+use crate::reference::two_phase::TwoPhaseReference;
 use crate::reference::{
-    Hill, LagrangianBar, Linear, NeoHookean, Reference, ReferenceError, StaticColumn, Strain, VibratingBar,
+    Hill, LagrangianBar, Linear, Logarithmic, NeoHookean, Reference, ReferenceError, StaticColumn, Strain,
+    VibratingBar,
 };
 use crate::scene::{Against, Law, ReferenceSpec, Scene};
 
+/// A solution for as many phases as the scene has.
+pub(super) enum Solution {
+    One(Box<dyn Reference>),
+    Two(Box<dyn TwoPhaseReference>),
+}
+
 /// Builds it, with whatever the scene says already.
-pub(super) fn solution(scene: &Scene) -> Result<Option<Box<dyn Reference>>, RunError> {
+pub(super) fn solution(scene: &Scene) -> Result<Option<Solution>, RunError> {
     let (Some(reference), Some(body)) = (&scene.reference, scene.bodies.first()) else {
         return Ok(None);
     };
@@ -15,7 +25,7 @@ pub(super) fn solution(scene: &Scene) -> Result<Option<Box<dyn Reference>>, RunE
     let problem = Problem {
         origin: at(&body.min),
         length: at(&body.max) - at(&body.min),
-        density: scene.material.density,
+        density: scene.material.solid_density(),
         law: scene.material.law,
     };
     let solution = match *reference {
@@ -28,8 +38,13 @@ pub(super) fn solution(scene: &Scene) -> Result<Option<Box<dyn Reference>>, RunE
             Against::Static => problem.static_column(body_force)?,
             Against::Dynamic => problem.column(body_force, ramp)?,
         },
+        reference => {
+            let (origin, height) = (problem.origin, problem.length);
+            return two_phase::solution(scene, reference, origin, height)
+                .map(|solution| solution.map(Solution::Two));
+        }
     };
-    Ok(Some(solution))
+    Ok(Some(Solution::One(solution)))
 }
 
 struct Problem {
@@ -39,10 +54,10 @@ struct Problem {
     law: Law,
 }
 
-type Solution = Result<Box<dyn Reference>, ReferenceError>;
+type Built = Result<Box<dyn Reference>, ReferenceError>;
 
 impl Problem {
-    fn bar(&self, velocity: f64) -> Solution {
+    fn bar(&self, velocity: f64) -> Built {
         let (length, density) = (self.length, self.density);
         match self.law {
             Law::LinearElastic { youngs_modulus } => {
@@ -58,21 +73,24 @@ impl Problem {
                 let bar = LagrangianBar::vibrating_bar(length, density, velocity, law)?;
                 Ok(Box::new(bar.with_origin(self.origin)?))
             }
+            Law::Logarithmic { youngs_modulus } => {
+                let law = Logarithmic { youngs_modulus };
+                let bar = LagrangianBar::vibrating_bar(length, density, velocity, law)?;
+                Ok(Box::new(bar.with_origin(self.origin)?))
+            }
         }
     }
 
-    fn static_column(&self, body_force: f64) -> Solution {
+    fn static_column(&self, body_force: f64) -> Built {
         let (strain, youngs_modulus) = match self.law {
             Law::LinearElastic { youngs_modulus } => (Strain::Small, youngs_modulus),
-            Law::Hill { youngs_modulus } | Law::NeoHookean { youngs_modulus } => {
-                (Strain::Large, youngs_modulus)
-            }
+            law => (Strain::Large, law.youngs_modulus()),
         };
         let column = StaticColumn::new(self.length, self.density, youngs_modulus, body_force, strain)?;
         Ok(Box::new(column.with_origin(self.origin)?))
     }
 
-    fn column(&self, body_force: f64, ramp: f64) -> Solution {
+    fn column(&self, body_force: f64, ramp: f64) -> Built {
         let (length, density, origin) = (self.length, self.density, self.origin);
         match self.law {
             Law::LinearElastic { youngs_modulus } => {
@@ -87,6 +105,11 @@ impl Problem {
             }
             Law::NeoHookean { youngs_modulus } => {
                 let law = neo_hookean(youngs_modulus);
+                let column = LagrangianBar::column(length, density, body_force, ramp, law)?;
+                Ok(Box::new(column.with_origin(origin)?))
+            }
+            Law::Logarithmic { youngs_modulus } => {
+                let law = Logarithmic { youngs_modulus };
                 let column = LagrangianBar::column(length, density, body_force, ramp, law)?;
                 Ok(Box::new(column.with_origin(origin)?))
             }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::march::March;
 use super::norms::ErrorNorms;
 use super::schedule::Schedule;
-use crate::scene::{Law, ScalarKind, Scene};
+use crate::scene::{ScalarKind, Scene};
 use crate::stepper::{Conservation, Simulation};
 
 /// The method and the model of a run, by name.
@@ -36,19 +36,15 @@ pub struct MethodSummary {
 impl MethodSummary {
     /// Of a scene.
     pub fn of(scene: &Scene) -> Self {
-        let (law, strain) = match scene.material.law {
-            Law::LinearElastic { .. } => ("linear-elastic", "small"),
-            Law::Hill { .. } => ("linear-elastic", "large"),
-            Law::NeoHookean { .. } => ("neo-hookean", "large"),
-        };
+        let law = scene.material.law;
         Self {
             basis: scene.method.basis.name(),
             degree: scene.method.basis.degree(),
             reconstruction: scene.method.reconstruction.name(),
             velocity_mass: scene.method.velocity_mass.name(),
-            phases: 1,
-            law,
-            strain,
+            phases: scene.material.phases.count(),
+            law: law.name(),
+            strain: if law.large_strain() { "large" } else { "small" },
             scalar: match scene.method.scalar {
                 ScalarKind::F64 => "f64",
                 ScalarKind::F32 => "f32",
@@ -130,6 +126,9 @@ pub struct Summary {
     pub conservation: BTreeMap<&'static str, ConservationSummary>,
     /// Energy.
     pub energy: EnergySummary,
+    /// What the user should know although the run was done.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
 }
 
 impl Summary {
@@ -143,6 +142,11 @@ impl Summary {
         let wall_seconds = march.wall.as_secs_f64();
         let particles = simulation.particle_count();
         let diagnostics = simulation.diagnostics();
+        let liquid = diagnostics.liquid_conservation;
+        let conservation = [("solid", Some(diagnostics.conservation)), ("liquid", liquid)]
+            .into_iter()
+            .filter_map(|(phase, errors)| Some((phase, errors?.into())))
+            .collect();
         let energy = march.energy;
         let ratio = |value: f64| (energy.initial > 0.0).then(|| value / energy.initial);
         Self {
@@ -160,13 +164,14 @@ impl Summary {
             grid_crossings: diagnostics.grid_crossings,
             reduced_cells: diagnostics.reduced_cells,
             errors,
-            conservation: BTreeMap::from([("solid", diagnostics.conservation.into())]),
+            conservation,
             energy: EnergySummary {
                 initial: energy.initial,
                 last: energy.last,
                 highest_ratio: ratio(energy.highest),
                 lowest_ratio: ratio(energy.lowest),
             },
+            warnings: Vec::new(),
         }
     }
 }

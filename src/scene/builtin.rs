@@ -1,7 +1,7 @@
 //! Scenes that are compiled in.
 
 /// Names and texts; the first is the default.
-const SCENES: [(&str, &str); 3] = [
+const SCENES: [(&str, &str); 9] = [
     (
         "vibrating-bar-large",
         include_str!("../../examples/scenes/vibrating-bar-large.toml"),
@@ -13,6 +13,30 @@ const SCENES: [(&str, &str); 3] = [
     (
         "column-compaction",
         include_str!("../../examples/scenes/column-compaction.toml"),
+    ),
+    (
+        "consolidation",
+        include_str!("../../examples/scenes/consolidation.toml"),
+    ),
+    (
+        "consolidation-small",
+        include_str!("../../examples/scenes/consolidation-small.toml"),
+    ),
+    (
+        "consolidation-large",
+        include_str!("../../examples/scenes/consolidation-large.toml"),
+    ),
+    (
+        "saturated-column",
+        include_str!("../../examples/scenes/saturated-column.toml"),
+    ),
+    (
+        "undrained-load",
+        include_str!("../../examples/scenes/undrained-load.toml"),
+    ),
+    (
+        "standing-wave",
+        include_str!("../../examples/scenes/standing-wave.toml"),
     ),
 ];
 

@@ -25,8 +25,8 @@ pub use crate::method::{Basis, ReconstructionKind};
 pub use error::SceneError;
 pub use expression::{Expression, ExpressionError, ExpressionProblem};
 pub use spec::{
-    Against, Body, Boundary, BoundaryKind, GridSpec, Law, Material, Method, OutputSpec, ParticleOutput,
-    ReferenceSpec, ScalarKind, StepSize, TimeSpec,
+    Against, Body, Boundary, BoundaryKind, GridSpec, Initialise, Law, Material, Method, OutputSpec,
+    ParticleOutput, Phases, PoreBoundary, ReferenceSpec, ScalarKind, StepSize, TimeSpec,
 };
 
 use std::path::Path;

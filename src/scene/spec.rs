@@ -4,6 +4,7 @@ use super::Expression;
 use crate::grid::Face;
 use crate::mass::VelocityMass;
 use crate::method::{self, Basis, ReconstructionKind};
+use crate::phase::TwoPhase;
 
 /// The background grid: a box of equal cells, one number per axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,15 +96,88 @@ pub enum Law {
         /// Young's modulus of the undeformed material (Pa), positive.
         youngs_modulus: f64,
     },
+    /// `logarithmic`, large strain: stress `E ln J`.
+    Logarithmic {
+        /// Young's modulus of the undeformed material (Pa), positive.
+        youngs_modulus: f64,
+    },
+}
+
+impl Law {
+    /// Name in scenes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LinearElastic { .. } | Self::Hill { .. } => "linear-elastic",
+            Self::NeoHookean { .. } => "neo-hookean",
+            Self::Logarithmic { .. } => "logarithmic",
+        }
+    }
+
+    /// Whether it is one of large strain.
+    pub fn large_strain(self) -> bool {
+        !matches!(self, Self::LinearElastic { .. })
+    }
+
+    /// Young's modulus (Pa).
+    pub fn youngs_modulus(self) -> f64 {
+        match self {
+            Self::LinearElastic { youngs_modulus }
+            | Self::Hill { youngs_modulus }
+            | Self::NeoHookean { youngs_modulus }
+            | Self::Logarithmic { youngs_modulus } => youngs_modulus,
+        }
+    }
+}
+
+/// What the material is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phases {
+    /// A dry solid.
+    One {
+        /// Mass density at the start (kg/m3), positive.
+        density: f64,
+    },
+    /// A solid whose pores are full of a liquid that moves with a velocity of its own.
+    Two(TwoPhase<f64>),
+}
+
+impl Phases {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::One { .. } => 1,
+            Self::Two(_) => 2,
+        }
+    }
 }
 
 /// The material of every body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// Mass density at the start (kg/m3), positive.
-    pub density: f64,
-    /// Constitutive law.
+    /// The phases with their constants.
+    pub phases: Phases,
+    /// Constitutive law of the solid.
     pub law: Law,
+}
+
+impl Material {
+    /// Density (kg/m3) of the particles' own mass at the start: of the solid with its pores, without a liquid in them.
+    pub fn solid_density(&self) -> f64 {
+        match self.phases {
+            Phases::One { density } => density,
+            Phases::Two(soil) => soil.dry_density(),
+        }
+    }
+}
+
+/// Where the expressions of a body's initial values are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Initialise {
+    /// At the particles.
+    #[default]
+    Exact,
+    /// At the DOFs' interpolation points, and interpolated to the particles.
+    Dofs,
 }
 
 /// A box filled with particles.
@@ -117,8 +191,15 @@ pub struct Body {
     pub particles_per_cell: Vec<usize>,
     /// Velocity at the start (m/s), in `x`, `y`, `z`; one expression per axis. Without it the body is at rest.
     pub velocity: Option<Vec<Expression>>,
-    /// Stress at the start (Pa), tension positive, in `x`, `y`, `z`. Without it the body is free of stress.
+    /// Stress at the start (Pa), tension positive, in `x`, `y`, `z`; with two phases the effective one. Without it the body
+    /// is free of stress.
     pub stress: Option<Expression>,
+    /// Velocity of the liquid at the start (m/s), as `velocity`. Without it the liquid moves with the solid.
+    pub liquid_velocity: Option<Vec<Expression>>,
+    /// Pore pressure at the start (Pa), tension positive, in `x`, `y`, `z`. Without it there is none.
+    pub pore_pressure: Option<Expression>,
+    /// Where these are taken.
+    pub initialise: Initialise,
     /// How irregular the layout is: each particle is moved at random within this fraction of its spacing,
     /// 0 to 1.
     pub jitter: f64,
@@ -126,9 +207,11 @@ pub struct Body {
     pub seed: u64,
 }
 
-/// What holds at a face.
+/// What holds at a face, for the solid with all in its pores.
 #[derive(Clone, Debug)]
 pub enum BoundaryKind {
+    /// Nothing: the boundary is about the liquid only.
+    Free,
     /// The grid's face does not move.
     Fixed,
     /// The grid's face moves with this velocity (m/s), in `t`; one expression per axis.
@@ -138,13 +221,38 @@ pub enum BoundaryKind {
     Traction(Vec<Expression>),
 }
 
-/// A face and what holds there; faces that no boundary names are free.
+/// What the liquid in the pores meets at a face.
+#[derive(Clone, Debug)]
+pub enum PoreBoundary {
+    /// It does not pass.
+    Sealed,
+    /// It passes freely into the open, where the pressure is 0.
+    Drained,
+    /// It passes freely; the pressure outside (Pa, tension positive), in `t`.
+    Pressure(Expression),
+}
+
+/// A face and what holds there; faces that no boundary names are free, and no liquid passes them.
 #[derive(Clone, Debug)]
 pub struct Boundary {
     /// The face.
     pub face: Face,
     /// What holds.
     pub kind: BoundaryKind,
+    /// What the liquid meets.
+    pub pores: PoreBoundary,
+}
+
+impl Boundary {
+    /// Whether the grid's face is held: fixed or told a velocity.
+    pub fn is_held(&self) -> bool {
+        matches!(self.kind, BoundaryKind::Fixed | BoundaryKind::Velocity(_))
+    }
+
+    /// Whether liquid passes.
+    pub fn is_open(&self) -> bool {
+        !matches!(self.pores, PoreBoundary::Sealed)
+    }
 }
 
 /// Which solution of the column the errors are taken against.
@@ -174,6 +282,70 @@ pub enum ReferenceSpec {
         /// Column at rest or in motion.
         against: Against,
     },
+    /// `consolidation`, two phases: a layer on a fixed base under a load at its drained top; exact at small strain, converged
+    /// at large strain. Its state at `start` is also the initial state of the body.
+    Consolidation {
+        /// Load on the top (Pa), not 0, negative in compression.
+        load: f64,
+        /// Time (s) of the solution at which the run starts; 0 at large strain.
+        start: f64,
+    },
+    /// `xie-leo`, two phases: the same at large strain without inertia, for the logarithmic law and permeability exponent 2.
+    XieLeo {
+        /// Load on the top (Pa), not 0, negative in compression.
+        load: f64,
+    },
+    /// `standing-wave`, two phases: both ends fixed, started with the fast damped wave, whose state at time 0 is also the
+    /// initial state of the body.
+    StandingWave {
+        /// Largest velocity of the solid at the start (m/s), not 0.
+        velocity: f64,
+        /// Half waves in the column, positive.
+        mode: usize,
+    },
+    /// `self-weight`, two phases: a column on a fixed base, at rest under its weight.
+    SelfWeight,
+}
+
+impl ReferenceSpec {
+    /// Name in scenes.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::VibratingBar { .. } => "vibrating-bar",
+            Self::ColumnCompaction { .. } => "column-compaction",
+            Self::Consolidation { .. } => "consolidation",
+            Self::XieLeo { .. } => "xie-leo",
+            Self::StandingWave { .. } => "standing-wave",
+            Self::SelfWeight => "self-weight",
+        }
+    }
+
+    /// How many phases it is about.
+    pub fn phases(&self) -> usize {
+        match self {
+            Self::VibratingBar { .. } | Self::ColumnCompaction { .. } => 1,
+            Self::Consolidation { .. }
+            | Self::XieLeo { .. }
+            | Self::StandingWave { .. }
+            | Self::SelfWeight => 2,
+        }
+    }
+
+    /// Whether the initial state of the body is the reference's.
+    pub fn gives_initial_state(&self) -> bool {
+        matches!(
+            self,
+            Self::Consolidation { .. } | Self::XieLeo { .. } | Self::StandingWave { .. }
+        )
+    }
+
+    /// Time (s) of the reference at which the run starts.
+    pub fn start(&self) -> f64 {
+        match self {
+            Self::Consolidation { start, .. } => *start,
+            _ => 0.0,
+        }
+    }
 }
 
 /// File format of the particles.

@@ -3,6 +3,7 @@
 use super::*;
 use crate::grid::{Face, Side};
 use crate::mass::VelocityMass;
+use crate::phase::Drag;
 
 /// The least that a scene may say.
 const LEAST: &str = r#"
@@ -173,13 +174,30 @@ fn compiled_in_scenes_are_the_benchmarks() {
     );
     assert_eq!((large.time.step, large.time.end), (StepSize::Fixed(1e-4), 0.1));
     let column = scene("column-compaction");
-    assert_eq!(column.material.density, 1.0);
+    assert_eq!(column.material.phases, Phases::One { density: 1.0 });
     assert_eq!(
         (column.grid.cells[0], column.bodies[0].particles_per_cell[0]),
         (50, 20)
     );
     assert_eq!(column.body_force.unwrap()[0].eval_time(0.5), Ok(-200.0));
     assert!(Scene::builtin("no such scene").is_none());
+    let soil = scene("consolidation-small");
+    let Phases::Two(phases) = soil.material.phases else {
+        panic!("one phase");
+    };
+    assert_eq!(
+        (phases.porosity, phases.permeability, phases.gravity),
+        (0.4, 1e-5, 9.81)
+    );
+    assert_eq!((phases.drag, soil.time.end), (Drag::Implicit, 2e-9));
+    assert_eq!(soil.bodies[0].initialise, Initialise::Dofs);
+    assert_eq!(
+        soil.reference,
+        Some(ReferenceSpec::Consolidation {
+            load: -1e4,
+            start: 5.0
+        })
+    );
     for name in Scene::builtin_names() {
         let method = scene(name).method.method();
         assert_eq!(method.to_string(), "bspline+taylor", "{name}");

@@ -50,26 +50,33 @@ pub struct Row {
     pub conservation: BTreeMap<&'static str, ConservationSummary>,
     /// How often a particle changed its cell.
     pub grid_crossings: usize,
-    /// Whether no other row is both faster and more accurate in the stress.
+    /// Whether no other row is both faster and more accurate in the (effective) stress.
     pub on_front: bool,
     /// Why the run stopped early, if it did; its errors are then absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
+    /// What the user should know although the run was done, see [`crate::run::Summary::warnings`].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// The method.
     #[serde(skip)]
     pub method: Method,
 }
 
 impl Row {
-    /// Relative L2 error of the stress: what the front is about.
+    /// Relative L2 error of the stress, in two phases of the effective one: what the front is about.
     pub fn stress_error(&self) -> Option<f64> {
-        self.errors.get("stress").map(|norms| norms.relative_l2)
+        let errors = &self.errors;
+        let stress = errors.get("stress").or_else(|| errors.get("effective_stress"));
+        stress.map(|norms| norms.relative_l2)
     }
 }
 
 /// Rows of a study, method by method, cells ascending, and the runs at the scene's own resolution.
 #[derive(Debug)]
 pub struct Study {
+    /// Number of phases of the scene.
+    pub phases: usize,
     /// All rows.
     pub rows: Vec<Row>,
     /// Runs to draw fields of: each method at the number of cells nearest to the scene's.
@@ -131,7 +138,11 @@ pub fn study(
     }
     fill_orders(&mut rows);
     front::mark(&mut rows);
-    Ok(Study { rows, drawn })
+    Ok(Study {
+        phases: scene.material.phases.count(),
+        rows,
+        drawn,
+    })
 }
 
 fn nearest(cells: &[usize], wanted: usize) -> usize {
@@ -160,6 +171,7 @@ fn one(
         grid_crossings: 0,
         on_front: false,
         stopped: None,
+        warnings: Vec::new(),
         method,
     };
     let mut times = Vec::with_capacity(repeat);
@@ -190,6 +202,7 @@ fn one(
         row.errors = summary.errors.clone();
         row.conservation = summary.conservation.clone();
         row.grid_crossings = summary.grid_crossings;
+        row.warnings = summary.warnings.clone();
     }
     Ok((row, last))
 }

@@ -151,6 +151,119 @@ fn check_names_the_largest_stable_step_and_what_limits_it() {
 }
 
 #[test]
+fn a_run_of_two_phases_reports_both() {
+    let (output, folder) = materialpoint("two-phases", &["run", "consolidation-small", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["method"]["phases"], 2);
+    assert!(summary["warnings"].is_null());
+    for field in [
+        "solid_displacement",
+        "solid_velocity",
+        "liquid_velocity",
+        "effective_stress",
+        "pore_pressure",
+    ] {
+        for norm in ["rms", "relative_l2", "max"] {
+            assert!(summary["errors"][field][norm].is_f64(), "{field} {norm}");
+        }
+    }
+    for phase in ["solid", "liquid"] {
+        let mass = summary["conservation"][phase]["mass"].as_f64().unwrap();
+        assert!(mass < 1e-13, "{phase}: {mass:e}");
+    }
+    let csv = std::fs::read_to_string(folder.join("particles.csv")).unwrap();
+    let header =
+        "x0[m],x[m],u_solid[m],v_solid[m/s],v_liquid[m/s],effective_stress[Pa],pore_pressure[Pa],porosity[-]";
+    assert_eq!(csv.lines().next(), Some(header));
+    assert_eq!(csv.lines().count(), 1 + 20 * 4);
+    let picture = std::fs::read_to_string(folder.join("fields.svg")).unwrap();
+    for name in [
+        "solid displacement",
+        "liquid velocity",
+        "effective stress",
+        "pore pressure",
+    ] {
+        assert!(picture.contains(name), "{name}");
+    }
+}
+
+/// Ten steps just above the drag's limit still end, with a warning.
+#[test]
+fn a_step_above_the_critical_one_is_warned_of() {
+    let set = [
+        "--set",
+        "material.drag=explicit",
+        "--set",
+        "time.step=4e-5",
+        "--set",
+        "time.end=4e-4",
+    ];
+    let arguments = [&["run", "consolidation", "--json"], &set[..]].concat();
+    let (output, _) = materialpoint("warned", &arguments);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    assert_eq!(message.lines().count(), 1, "{message}");
+    for fragment in [
+        "warning",
+        "largest stable step",
+        "the drag between solid and liquid",
+        "implicit",
+    ] {
+        assert!(message.contains(fragment), "{message:?} lacks {fragment:?}");
+    }
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["warnings"].as_array().map(Vec::len), Some(1));
+    let (output, _) = materialpoint(
+        "warned-check",
+        &[&["check", "consolidation", "--json"], &set[..]].concat(),
+    );
+    let check: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(check["mechanism"], "the drag between solid and liquid (explicit)");
+    assert_eq!(check["unknowns_per_dof"], 2);
+    assert_eq!(check["stable"], false);
+    let (output, _) = materialpoint("implicit-check", &["check", "consolidation", "--json"]);
+    let check: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let mechanism = check["mechanism"].as_str().unwrap();
+    assert!(mechanism.starts_with("a compression wave of solid and liquid crossing a cell"));
+}
+
+#[test]
+fn a_study_of_two_phases_compares_the_nine_methods_that_know_them() {
+    let study = ["study", "consolidation-small"];
+    let (output, folder) = materialpoint(
+        "two-phase-study",
+        &[&study[..], &["--json", "--cells", "10"]].concat(),
+    );
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let rows: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(rows["rows"].as_array().map(Vec::len), Some(9));
+    let csv = std::fs::read_to_string(folder.join("study.csv")).unwrap();
+    for column in [
+        "effective_stress_order",
+        "pore_pressure_rms",
+        ",mass_error,",
+        "liquid_momentum_error_scaled",
+    ] {
+        assert!(csv.contains(column), "{column}");
+    }
+    let (output, _) = materialpoint("two-phase-table", &[&study[..], &["--cells", "10"]].concat());
+    let table = text(&output.stdout);
+    assert!(
+        table.contains("p error") && table.contains("For an effective stress error"),
+        "{table}"
+    );
+    let relaxed = [&study[..], &["--methods", "linear+relaxed-taylor"]].concat();
+    let (output, _) = materialpoint("two-phase-relaxed", &relaxed);
+    assert_refused(
+        &output,
+        2,
+        &["--methods", "linear+relaxed-taylor", "one phase only so far"],
+    );
+}
+
+#[test]
 fn list_names_everything_a_scene_can_ask_for() {
     let (output, _) = materialpoint("list", &["list"]);
     let list = text(&output.stdout);
@@ -166,6 +279,15 @@ fn list_names_everything_a_scene_can_ask_for() {
         "vibrating-bar",
         "column-compaction",
         "vibrating-bar-small",
+        "logarithmic",
+        "a saturated solid",
+        "consolidation",
+        "xie-leo",
+        "standing-wave",
+        "self-weight",
+        "consolidation-large",
+        "saturated-column",
+        "undrained-load",
     ] {
         assert!(list.contains(name), "{name}");
     }

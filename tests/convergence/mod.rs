@@ -1,6 +1,7 @@
 //! Errors and orders against exact and converged solutions, from both sides: the tables of the method's page.
 
 mod column;
+mod consolidation;
 mod critical_step;
 mod full_period;
 mod large_bar;

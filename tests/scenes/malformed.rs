@@ -5,6 +5,7 @@
 
 mod limits;
 mod text;
+mod two_phase;
 mod values;
 
 use materialpoint::scene::Scene;
@@ -179,10 +180,38 @@ fn a_scene_that_is_not_its_reference() {
     check(builtin("column-compaction"), limits::COLUMN);
 }
 
+#[test]
+fn the_scene_of_two_phases_is_good() {
+    use materialpoint::scene::{Initialise, Phases};
+    let scene = Scene::from_toml(two_phase::GOOD, &[]).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scene.material.phases.count(), 2);
+    assert!(matches!(scene.material.phases, Phases::Two(soil) if soil.permeability_exponent == 2.0));
+    assert_eq!(scene.bodies[0].initialise, Initialise::Dofs);
+    assert!(scene.boundaries.iter().all(|boundary| boundary.is_open()));
+    materialpoint::run::run(&scene, None, &mut |_| {}).unwrap();
+}
+
+#[test]
+fn two_phases_and_their_references() {
+    check(GOOD, two_phase::IN_ONE_PHASE);
+    check(two_phase::GOOD, two_phase::MATERIAL);
+    check(two_phase::GOOD, two_phase::BODIES);
+    check(builtin("consolidation"), two_phase::CONSOLIDATION);
+    check(builtin("consolidation-large"), two_phase::XIE_LEO);
+    check(builtin("standing-wave"), two_phase::WAVE);
+    check(builtin("saturated-column"), two_phase::WEIGHT);
+}
+
 /// Whatever is cut out of a good scene, there is a scene or a message, and never a panic.
 #[test]
 fn a_scene_with_any_line_missing_is_read_or_refused_in_one_line() {
-    let lines: Vec<&str> = GOOD.lines().collect();
+    for good in [GOOD, two_phase::GOOD] {
+        cut_lines(good);
+    }
+}
+
+fn cut_lines(scene: &str) {
+    let lines: Vec<&str> = scene.lines().collect();
     for skipped in 0..lines.len() {
         let kept = lines.iter().enumerate().filter(|(i, _)| *i != skipped);
         let text: Vec<&str> = kept.map(|(_, line)| *line).collect();
@@ -218,6 +247,9 @@ fn any_value_in_any_place_is_read_or_refused_in_one_line() {
         "material.law",
         "material.law.linear-elastic",
         "material.density",
+        "material.porosity",
+        "material.permeability",
+        "material.drag",
         "body",
         "body.0",
         "body.0.min",
@@ -226,19 +258,28 @@ fn any_value_in_any_place_is_read_or_refused_in_one_line() {
         "body.0.velocity",
         "body.0.velocity.0",
         "body.0.stress",
+        "body.0.liquid_velocity",
+        "body.0.pore_pressure",
+        "body.0.initialise",
         "body.0.jitter",
         "body.0.seed",
         "boundary",
         "boundary.0",
         "boundary.0.face",
         "boundary.0.fixed",
+        "boundary.0.drained",
+        "boundary.0.pore_pressure",
         "boundary.1.traction",
         "boundary.1.traction.0",
         "load",
         "load.body_force",
+        "load.gravity",
         "reference",
         "reference.vibrating-bar",
         "reference.column-compaction",
+        "reference.consolidation",
+        "reference.standing-wave.mode",
+        "reference.self-weight",
         "output",
         "output.every",
         "output.checkpoint_every",
@@ -273,7 +314,10 @@ fn any_value_in_any_place_is_read_or_refused_in_one_line() {
         .flat_map(|key| values.iter().map(move |value| (key, value)))
     {
         let edit = format!("{key}={value}");
-        if let Err(error) = Scene::from_toml(GOOD, std::slice::from_ref(&edit)) {
+        for good in [GOOD, two_phase::GOOD] {
+            let Err(error) = Scene::from_toml(good, std::slice::from_ref(&edit)) else {
+                continue;
+            };
             let message = error.to_string();
             let length = message.chars().count();
             assert!(

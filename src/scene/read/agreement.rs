@@ -1,6 +1,8 @@
 //! Whether the scene is the problem that its reference solves: errors against the solution of another problem
 //! would mean nothing.
 
+mod two_phase;
+
 use std::f64::consts::PI;
 
 use crate::grid::{Face, Side};
@@ -20,6 +22,7 @@ const TOP: Face = Face {
 };
 
 pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
+    check_phases(scene)?;
     match scene.reference {
         None => Ok(()),
         Some(ReferenceSpec::VibratingBar { velocity }) => bar(scene, velocity),
@@ -28,7 +31,28 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
             ramp,
             against,
         }) => column(scene, body_force, ramp, against),
+        Some(ReferenceSpec::Consolidation { load, start }) => two_phase::consolidation(scene, load, start),
+        Some(ReferenceSpec::XieLeo { load }) => two_phase::xie_leo(scene, load),
+        Some(ReferenceSpec::StandingWave { velocity, mode }) => {
+            two_phase::standing_wave(scene, velocity, mode)
+        }
+        Some(ReferenceSpec::SelfWeight) => two_phase::self_weight(scene),
     }
+}
+
+fn check_phases(scene: &Scene) -> Result<(), SceneError> {
+    let Some(reference) = scene.reference else {
+        return Ok(());
+    };
+    let (needed, found) = (reference.phases(), scene.material.phases.count());
+    if needed == found {
+        return Ok(());
+    }
+    let problem = format!(
+        "reference.{} is a solution for {needed} of them; expected material.phases = {needed}",
+        reference.name()
+    );
+    Err(refuse("material.phases", &found.to_string(), &problem))
 }
 
 fn bar(scene: &Scene, velocity: f64) -> Result<(), SceneError> {
@@ -107,16 +131,22 @@ fn static_column(scene: &Scene, body: &Body, body_force: f64) -> Result<(), Stri
     let (strain, youngs_modulus) = match scene.material.law {
         Law::LinearElastic { youngs_modulus } => (Strain::Small, youngs_modulus),
         Law::Hill { youngs_modulus } => (Strain::Large, youngs_modulus),
-        Law::NeoHookean { .. } => {
+        Law::NeoHookean { .. } | Law::Logarithmic { .. } => {
             return Err(
                 "against = \"static\" knows linear-elastic only; expected against = \"dynamic\"".into(),
             );
         }
     };
     let (_, height) = extent(body);
-    StaticColumn::new(height, scene.material.density, youngs_modulus, body_force, strain)
-        .map(drop)
-        .map_err(|error| format!("{error}; expected a smaller body_force or a stiffer law"))
+    StaticColumn::new(
+        height,
+        scene.material.solid_density(),
+        youngs_modulus,
+        body_force,
+        strain,
+    )
+    .map(drop)
+    .map_err(|error| format!("{error}; expected a smaller body_force or a stiffer law"))
 }
 
 fn refuse(key: &str, value: &str, problem: &str) -> SceneError {

@@ -1,16 +1,19 @@
 //! `[[body]]`
 
 use super::grid::{is_blurred, precision_hint};
+use super::material::PhaseCount;
 use super::{Item, MOST, Section};
 use crate::scene::expression::coordinates;
-use crate::scene::{Body, GridSpec, Law, ScalarKind, SceneError};
+use crate::scene::{Body, Expression, GridSpec, Initialise, Law, ScalarKind, SceneError};
 
-const KEYS: [&str; 8] = [
+const KEYS: [&str; 10] = [
     "min",
     "max",
     "particles_per_cell",
     "velocity",
     "stress",
+    "liquid_velocity",
+    "pore_pressure",
     "jitter",
     "seed",
     "initialise",
@@ -18,7 +21,12 @@ const KEYS: [&str; 8] = [
 
 const TWO_PHASE_KEYS: [&str; 2] = ["liquid_velocity", "pore_pressure"];
 
-pub(super) fn read(root: &Section<'_>, grid: &GridSpec, scalar: ScalarKind) -> Result<Vec<Body>, SceneError> {
+pub(super) fn read(
+    root: &Section<'_>,
+    grid: &GridSpec,
+    scalar: ScalarKind,
+    phases: PhaseCount,
+) -> Result<Vec<Body>, SceneError> {
     let expected = "at least one table, written [[body]]";
     let item = root.required("body", expected)?;
     let entries = item.list(expected)?;
@@ -28,7 +36,8 @@ pub(super) fn read(root: &Section<'_>, grid: &GridSpec, scalar: ScalarKind) -> R
     let mut bodies: Vec<Body> = Vec::new();
     let mut particles = 0.0;
     for entry in &entries {
-        let section = entry.section(expected)?.allow(&KEYS, &TWO_PHASE_KEYS)?;
+        let section = entry.section(expected)?.allow(&KEYS, &[])?;
+        phases.check(&section, &TWO_PHASE_KEYS)?;
         let body = one(&section, grid)?;
         if let Some(index) = bodies.iter().position(|other| overlap(&body, other)) {
             let problem = format!("the body overlaps body.{index}; expected bodies that at most touch");
@@ -66,20 +75,15 @@ fn one(section: &Section<'_>, grid: &GridSpec) -> Result<Body, SceneError> {
     let dimension = grid.cells.len();
     let (min, max) = corners(section, grid)?;
     let per_cell = section.required("particles_per_cell", "a list of whole numbers, one per axis")?;
-    if let Some(item) = section.optional("initialise") {
-        item.choice(&[("exact", ())], &["dofs"])?;
-    }
     let body = Body {
         particles_per_cell: per_cell.per_axis(dimension, "whole numbers", |n| n.size(1, MOST))?,
-        velocity: match section.optional("velocity") {
-            Some(item) => {
-                Some(item.per_axis(dimension, "expressions", |v| v.expression(coordinates(dimension)))?)
-            }
-            None => None,
-        },
-        stress: match section.optional("stress") {
-            Some(item) => Some(item.expression(coordinates(dimension))?),
-            None => None,
+        velocity: vector(section, "velocity", dimension)?,
+        stress: number(section, "stress", dimension)?,
+        liquid_velocity: vector(section, "liquid_velocity", dimension)?,
+        pore_pressure: number(section, "pore_pressure", dimension)?,
+        initialise: match section.optional("initialise") {
+            Some(item) => item.choice(&[("exact", Initialise::Exact), ("dofs", Initialise::Dofs)], &[])?,
+            None => Initialise::default(),
         },
         jitter: match section.optional("jitter") {
             Some(item) => item.number_where("a fraction of the particles' spacing, 0 to 1", |fraction| {
@@ -96,6 +100,26 @@ fn one(section: &Section<'_>, grid: &GridSpec) -> Result<Body, SceneError> {
     };
     check_values(&body)?;
     Ok(body)
+}
+
+/// One expression per axis under `name`, if there are any.
+fn vector(
+    section: &Section<'_>,
+    name: &str,
+    dimension: usize,
+) -> Result<Option<Vec<Expression>>, SceneError> {
+    let Some(item) = section.optional(name) else {
+        return Ok(None);
+    };
+    item.per_axis(dimension, "expressions", |v| v.expression(coordinates(dimension)))
+        .map(Some)
+}
+
+/// The expression under `name`, if there is one.
+fn number(section: &Section<'_>, name: &str, dimension: usize) -> Result<Option<Expression>, SceneError> {
+    let item = section.optional(name);
+    item.map(|item| item.expression(coordinates(dimension)))
+        .transpose()
 }
 
 fn corners(section: &Section<'_>, grid: &GridSpec) -> Result<(Vec<f64>, Vec<f64>), SceneError> {
@@ -123,13 +147,14 @@ fn corners(section: &Section<'_>, grid: &GridSpec) -> Result<(Vec<f64>, Vec<f64>
     Ok((min, max))
 }
 
-/// Refuses a velocity or stress that is not finite at the body's ends or middle. A hint: particles lie
+/// Refuses initial values that are not finite at the body's ends or middle. A hint: particles lie
 /// elsewhere too.
 fn check_values(body: &Body) -> Result<(), SceneError> {
     for part in [0.0, 0.5, 1.0] {
         let corners = body.min.iter().zip(&body.max);
         let point: Vec<f64> = corners.map(|(min, max)| min + part * (max - min)).collect();
-        for expression in body.velocity.iter().flatten().chain(&body.stress) {
+        let vectors = body.velocity.iter().chain(&body.liquid_velocity).flatten();
+        for expression in vectors.chain(&body.stress).chain(&body.pore_pressure) {
             expression.eval_at(&point)?;
         }
     }

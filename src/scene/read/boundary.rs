@@ -1,31 +1,47 @@
 //! `[[boundary]]`
 
+use super::material::PhaseCount;
 use super::{Item, Section, check_over_time};
 use crate::grid::{Face, Side};
 use crate::scene::text::one_of;
-use crate::scene::{Boundary, BoundaryKind, Expression, GridSpec, SceneError};
+use crate::scene::{Boundary, BoundaryKind, Expression, GridSpec, PoreBoundary, SceneError};
 
-const KEYS: [&str; 4] = ["face", "fixed", "velocity", "traction"];
+const KEYS: [&str; 6] = [
+    "face",
+    "fixed",
+    "velocity",
+    "traction",
+    "drained",
+    "pore_pressure",
+];
 const KINDS: [&str; 3] = ["fixed", "velocity", "traction"];
 const TWO_PHASE_KEYS: [&str; 2] = ["drained", "pore_pressure"];
 
-pub(super) fn read(root: &Section<'_>, grid: &GridSpec, end: f64) -> Result<Vec<Boundary>, SceneError> {
+pub(super) fn read(
+    root: &Section<'_>,
+    grid: &GridSpec,
+    end: f64,
+    phases: PhaseCount,
+) -> Result<Vec<Boundary>, SceneError> {
     let Some(item) = root.optional("boundary") else {
         return Ok(Vec::new());
     };
     let mut boundaries: Vec<Boundary> = Vec::new();
     for entry in item.list("tables, written [[boundary]]")? {
         let section = entry.section("a table, written [[boundary]]")?;
-        let section = section.allow(&KEYS, &TWO_PHASE_KEYS)?;
+        let section = section.allow(&KEYS, &[])?;
+        phases.check(&section, &TWO_PHASE_KEYS)?;
         let face = face(&section, grid.cells.len())?;
         if let Some(other) = boundaries.iter().position(|other| other.face == face.1) {
             let problem =
                 format!("boundary.{other} is about that face already; expected one [[boundary]] a face");
             return Err(face.0.conflict(&problem));
         }
+        let pores = pores(&section, end)?;
         boundaries.push(Boundary {
             face: face.1,
-            kind: kind(&entry, &section, grid.cells.len(), end)?,
+            kind: kind(&entry, &section, grid.cells.len(), end, phases)?,
+            pores,
         });
     }
     Ok(boundaries)
@@ -45,14 +61,22 @@ fn kind(
     section: &Section<'_>,
     dimension: usize,
     end: f64,
+    phases: PhaseCount,
 ) -> Result<BoundaryKind, SceneError> {
     let found = section.present(&KINDS);
+    if found.is_empty() && !section.present(&TWO_PHASE_KEYS).is_empty() {
+        return Ok(BoundaryKind::Free);
+    }
     let [kind] = found.as_slice() else {
         let found = match found.is_empty() {
             true => "none of them".to_string(),
             false => found.join(" and "),
         };
-        let problem = format!("expected exactly one of fixed, velocity, traction; found {found}");
+        let beside = match phases {
+            PhaseCount::One => "",
+            PhaseCount::Two => ", with or without drained or pore_pressure, or one of these alone",
+        };
+        let problem = format!("expected exactly one of fixed, velocity, traction{beside}; found {found}");
         return Err(entry.conflict(&problem));
     };
     let item = section.required(kind, "a value")?;
@@ -60,6 +84,26 @@ fn kind(
         "fixed" => fixed(&item),
         "velocity" => Ok(BoundaryKind::Velocity(in_time(&item, dimension, end)?)),
         _ => Ok(BoundaryKind::Traction(in_time(&item, dimension, end)?)),
+    }
+}
+
+/// What the liquid meets; without a word it does not pass.
+fn pores(section: &Section<'_>, end: f64) -> Result<PoreBoundary, SceneError> {
+    let expected = "true; where no [[boundary]] says so the liquid does not pass";
+    match (section.optional("drained"), section.optional("pore_pressure")) {
+        (None, None) => Ok(PoreBoundary::Sealed),
+        (Some(drained), Some(_)) => Err(drained.conflict(
+            "there is pore_pressure too, the pressure outside, which drained sets to 0; expected one of them",
+        )),
+        (Some(drained), None) => match drained.flag(expected)? {
+            true => Ok(PoreBoundary::Drained),
+            false => Err(drained.not_allowed(expected)),
+        },
+        (None, Some(pressure)) => {
+            let pressure = pressure.expression(&["t"])?;
+            check_over_time(std::slice::from_ref(&pressure), end)?;
+            Ok(PoreBoundary::Pressure(pressure))
+        }
     }
 }
 

@@ -1,7 +1,8 @@
 //! `[material]`
 
 use super::{Item, Section};
-use crate::scene::{Law, Material, SceneError};
+use crate::phase::{Drag, TwoPhase};
+use crate::scene::{Law, Material, Phases, SceneError};
 
 const KEYS: [&str; 4] = ["phases", "strain", "law", "density"];
 
@@ -27,48 +28,133 @@ enum Strain {
 enum LawName {
     LinearElastic,
     NeoHookean,
+    Logarithmic,
 }
 
-const LAWS: [(&str, LawName); 2] = [
+const LAWS: [(&str, LawName); 3] = [
     ("linear-elastic", LawName::LinearElastic),
     ("neo-hookean", LawName::NeoHookean),
+    ("logarithmic", LawName::Logarithmic),
 ];
 
-pub(super) fn read(section: Section<'_>) -> Result<Material, SceneError> {
-    // First, so that a scene of two phases is told so, not that one of its keys is unknown.
-    if let Some(item) = section.optional("phases") {
-        match item.count(0, u64::MAX)? {
-            1 => {}
-            2 => return Err(item.not_in_this_version("1")),
-            _ => return Err(item.not_allowed("1")),
+/// How many phases a scene has: which keys it may use elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PhaseCount {
+    One,
+    Two,
+}
+
+impl PhaseCount {
+    /// Refuses the given keys of two phases in a scene of one.
+    pub(super) fn check(self, section: &Section<'_>, two_phase_keys: &[&str]) -> Result<(), SceneError> {
+        if self == Self::Two {
+            return Ok(());
+        }
+        let present = section.present(two_phase_keys);
+        match present.first().and_then(|name| section.optional(name)) {
+            Some(item) => {
+                Err(item.conflict("it goes with material.phases = 2 only; leave it out, or set that"))
+            }
+            None => Ok(()),
         }
     }
-    let section = section.allow(&KEYS, &TWO_PHASE_KEYS)?;
+}
+
+/// `material.phases`, which the rest of the scene is read with.
+pub(super) fn phases(root: &Section<'_>) -> Result<PhaseCount, SceneError> {
+    let Some(item) = root.section("material")?.optional("phases") else {
+        return Ok(PhaseCount::One);
+    };
+    match item.count(0, u64::MAX)? {
+        1 => Ok(PhaseCount::One),
+        2 => Ok(PhaseCount::Two),
+        _ => Err(item.not_allowed("1 (a dry solid) or 2 (a solid and the liquid in its pores)")),
+    }
+}
+
+/// `gravity` (m/s2) is that of the liquid's unit weight.
+pub(super) fn read(section: Section<'_>, phases: PhaseCount, gravity: f64) -> Result<Material, SceneError> {
+    let keys = [&KEYS[..], &TWO_PHASE_KEYS].concat();
+    let known = match phases {
+        // A key of two phases is known, and refused as such below.
+        PhaseCount::One if section.present(&TWO_PHASE_KEYS).is_empty() => &KEYS[..],
+        _ => &keys,
+    };
+    let section = section.allow(known, &[])?;
+    phases.check(&section, &TWO_PHASE_KEYS)?;
     let strain_item = section.required("strain", "\"small\" or \"large\"")?;
     let strain = strain_item.choice(&[("small", Strain::Small), ("large", Strain::Large)], &[])?;
     let (name, youngs_modulus) = law(&section.required("law", LAW)?)?;
-    let density = section.required("density", "a positive number (kg/m3)")?;
+    let phases = match phases {
+        PhaseCount::One => one_phase(&section)?,
+        PhaseCount::Two => two_phases(&section, gravity)?,
+    };
     let law = match (name, strain) {
         (LawName::LinearElastic, Strain::Small) => Law::LinearElastic { youngs_modulus },
         (LawName::LinearElastic, Strain::Large) => Law::Hill { youngs_modulus },
         (LawName::NeoHookean, Strain::Large) => Law::NeoHookean { youngs_modulus },
+        (LawName::Logarithmic, Strain::Large) => Law::Logarithmic { youngs_modulus },
         (LawName::NeoHookean, Strain::Small) => {
             return Err(strain_item.conflict("the law neo-hookean is of large strain; expected \"large\""));
         }
+        (LawName::Logarithmic, Strain::Small) => {
+            return Err(strain_item.conflict("the law logarithmic is of large strain; expected \"large\""));
+        }
     };
-    Ok(Material {
+    Ok(Material { phases, law })
+}
+
+fn one_phase(section: &Section<'_>) -> Result<Phases, SceneError> {
+    let density = section.required("density", "a positive number (kg/m3)")?;
+    Ok(Phases::One {
         density: density.positive("kg/m3")?,
-        law,
     })
+}
+
+fn two_phases(section: &Section<'_>, gravity: f64) -> Result<Phases, SceneError> {
+    if let Some(density) = section.optional("density") {
+        return Err(density
+            .conflict("two phases have porosity, solid_density and liquid_density instead; leave it out"));
+    }
+    let positive = |name: &str, unit: &str| {
+        let item = section.required(name, &format!("a positive number ({unit})"))?;
+        item.positive(unit)
+    };
+    let porosity = "the liquid's share of the volume, above 0 and below 1";
+    Ok(Phases::Two(TwoPhase {
+        porosity: section
+            .required("porosity", porosity)?
+            .number_where(porosity, |n| n > 0.0 && n < 1.0)?,
+        solid_density: positive("solid_density", "kg/m3")?,
+        liquid_density: positive("liquid_density", "kg/m3")?,
+        liquid_bulk_modulus: positive("liquid_bulk_modulus", "Pa")?,
+        permeability: positive("permeability", "m/s")?,
+        permeability_exponent: match section.optional("permeability_exponent") {
+            Some(item) => item.number("a finite number")?,
+            None => 0.0,
+        },
+        gravity,
+        drag: match section.optional("drag") {
+            Some(item) => item.choice(
+                &[Drag::Implicit, Drag::Explicit].map(|drag| (drag.name(), drag)),
+                &[],
+            )?,
+            None => Drag::default(),
+        },
+    }))
 }
 
 /// The one law in the table, and its Young's modulus (Pa).
 fn law(item: &Item<'_>) -> Result<(LawName, f64), SceneError> {
     let section = item.section(LAW)?;
-    let section = section.allow(&LAWS.map(|law| law.0), &["logarithmic"])?;
+    let names = LAWS.map(|law| law.0);
+    let section = section.allow(&names, &[])?;
     if section.items().len() > 1 {
-        let problem = "these are several laws; expected exactly one of linear-elastic, neo-hookean";
-        return Err(item.conflict(problem));
+        let problem = format!(
+            "these are several laws; expected exactly one of {}",
+            names.join(", ")
+        );
+        return Err(item.conflict(&problem));
     }
     for (name, law) in LAWS {
         if let Some(constants) = section.optional(name) {

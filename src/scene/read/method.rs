@@ -1,5 +1,6 @@
 //! `[method]`
 
+use super::material::PhaseCount;
 use super::{Item, Section};
 use crate::mass::VelocityMass;
 use crate::scene::{Basis, Method, ReconstructionKind, ScalarKind, SceneError};
@@ -21,10 +22,10 @@ const RECONSTRUCTIONS: [(&str, ReconstructionKind); 4] = [
 ];
 
 /// `dimension` is the number of the grid's axes.
-pub(super) fn read(section: Section<'_>, dimension: usize) -> Result<Method, SceneError> {
+pub(super) fn read(section: Section<'_>, dimension: usize, phases: PhaseCount) -> Result<Method, SceneError> {
     let section = section.allow(&KEYS, &[])?;
     let basis = basis(&section)?;
-    let reconstruction = reconstruction(&section, dimension)?;
+    let reconstruction = reconstruction(&section, dimension, phases)?;
     if let Some(item) = section.optional("subpoints") {
         check_subpoints(&item, basis, reconstruction)?;
     }
@@ -58,7 +59,11 @@ fn basis(section: &Section<'_>) -> Result<Basis, SceneError> {
     }
 }
 
-fn reconstruction(section: &Section<'_>, dimension: usize) -> Result<ReconstructionKind, SceneError> {
+fn reconstruction(
+    section: &Section<'_>,
+    dimension: usize,
+    phases: PhaseCount,
+) -> Result<ReconstructionKind, SceneError> {
     let item = section.required(
         "reconstruction",
         "\"shepard\", \"taylor\", \"relaxed-taylor\" or \"spline\"",
@@ -68,6 +73,11 @@ fn reconstruction(section: &Section<'_>, dimension: usize) -> Result<Reconstruct
         return Err(item.conflict(&format!(
             "a cubic spline exists in 1-D only and the grid has {dimension} axes; expected \"shepard\", \"taylor\" or \"relaxed-taylor\""
         )));
+    }
+    if reconstruction == ReconstructionKind::RelaxedTaylor && phases == PhaseCount::Two {
+        return Err(
+            item.conflict("it knows one phase only so far; expected \"shepard\", \"taylor\" or \"spline\"")
+        );
     }
     Ok(reconstruction)
 }

@@ -41,16 +41,18 @@ pub(super) fn scene(table: &Table) -> Result<Scene, SceneError> {
     let root = Section::new(String::new(), table).allow(&KEYS, &[])?;
     let title = title(&root)?;
     let grid = grid::read(&root)?;
-    let method = method::read(root.section("method")?, grid.cells.len())?;
+    let phases = material::phases(&root)?;
+    let method = method::read(root.section("method")?, grid.cells.len(), phases)?;
     grid::check_one_axis(&root, &grid)?;
     grid::check_cell_size(&root, &grid, method.scalar)?;
     let time = time::read(root.section("time")?)?;
+    let load = load::read(&root, &grid, time.end, phases)?;
     let scene = Scene {
         title,
-        material: material::read(root.section("material")?)?,
-        bodies: body::read(&root, &grid, method.scalar)?,
-        boundaries: boundary::read(&root, &grid, time.end)?,
-        body_force: load::read(&root, &grid, time.end)?,
+        material: material::read(root.section("material")?, phases, load.gravity)?,
+        bodies: body::read(&root, &grid, method.scalar, phases)?,
+        boundaries: boundary::read(&root, &grid, time.end, phases)?,
+        body_force: load.body_force,
         reference: reference::read(&root)?,
         output: output::read(&root)?,
         grid,

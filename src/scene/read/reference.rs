@@ -3,25 +3,37 @@
 use super::{Item, Section};
 use crate::scene::{Against, ReferenceSpec, SceneError};
 
-const KEYS: [&str; 2] = ["vibrating-bar", "column-compaction"];
-const TWO_PHASE_KEYS: [&str; 2] = ["consolidation", "xie-leo"];
+type Read = fn(&Item<'_>) -> Result<ReferenceSpec, SceneError>;
+
+const REFERENCES: [(&str, Read); 6] = [
+    ("vibrating-bar", vibrating_bar),
+    ("column-compaction", column_compaction),
+    ("consolidation", consolidation),
+    ("xie-leo", xie_leo),
+    ("standing-wave", standing_wave),
+    ("self-weight", self_weight),
+];
+
+/// Most half waves of a standing wave.
+const MOST_MODES: u64 = 1_000_000;
 
 pub(super) fn read(root: &Section<'_>) -> Result<Option<ReferenceSpec>, SceneError> {
     let Some(section) = root.optional_section("reference")? else {
         return Ok(None);
     };
-    let section = section.allow(&KEYS, &TWO_PHASE_KEYS)?;
-    let found = (
-        section.optional("vibrating-bar"),
-        section.optional("column-compaction"),
-    );
-    match found {
-        (Some(bar), None) => vibrating_bar(&bar).map(Some),
-        (None, Some(column)) => column_compaction(&column).map(Some),
-        (None, None) => Err(section.missing("one of vibrating-bar, column-compaction, or no [reference]")),
-        (Some(bar), Some(_)) => {
-            Err(bar.conflict("there is reference.column-compaction too; expected exactly one reference"))
-        }
+    let names = REFERENCES.map(|reference| reference.0);
+    let section = section.allow(&names, &[])?;
+    let found: Vec<_> = REFERENCES
+        .iter()
+        .filter_map(|(name, read)| Some((section.optional(name)?, read)))
+        .collect();
+    match found.as_slice() {
+        [] => Err(section.missing(&format!("one of {}, or no [reference]", names.join(", ")))),
+        [(item, read)] => read(item).map(Some),
+        [(item, _), (other, _), ..] => Err(item.conflict(&format!(
+            "there is {} too; expected exactly one reference",
+            other.key
+        ))),
     }
 }
 
@@ -48,6 +60,44 @@ fn column_compaction(item: &Item<'_>) -> Result<ReferenceSpec, SceneError> {
             None => Against::default(),
         },
     })
+}
+
+fn consolidation(item: &Item<'_>) -> Result<ReferenceSpec, SceneError> {
+    let section = item.section("a table, such as { load = -1e4, start = 5.0 }")?;
+    let section = section.allow(&["load", "start"], &[])?;
+    let start = "the time of the solution at which the run starts, 0 or more (s)";
+    Ok(ReferenceSpec::Consolidation {
+        load: not_zero(&section, "load", "a number other than 0 (Pa)")?,
+        start: match section.optional("start") {
+            Some(item) => item.number_where(start, |time| time >= 0.0)?,
+            None => 0.0,
+        },
+    })
+}
+
+fn xie_leo(item: &Item<'_>) -> Result<ReferenceSpec, SceneError> {
+    let section = item.section("a table, such as { load = -5e5 }")?;
+    let section = section.allow(&["load"], &[])?;
+    Ok(ReferenceSpec::XieLeo {
+        load: not_zero(&section, "load", "a number other than 0 (Pa)")?,
+    })
+}
+
+fn standing_wave(item: &Item<'_>) -> Result<ReferenceSpec, SceneError> {
+    let section = item.section("a table, such as { velocity = 1e-3, mode = 1 }")?;
+    let section = section.allow(&["velocity", "mode"], &[])?;
+    Ok(ReferenceSpec::StandingWave {
+        velocity: not_zero(&section, "velocity", "a number other than 0 (m/s)")?,
+        mode: match section.optional("mode") {
+            Some(item) => item.size(1, MOST_MODES)?,
+            None => 1,
+        },
+    })
+}
+
+fn self_weight(item: &Item<'_>) -> Result<ReferenceSpec, SceneError> {
+    item.section("an empty table, {}")?.allow_none()?;
+    Ok(ReferenceSpec::SelfWeight)
 }
 
 /// Relative errors need something to be relative to.

@@ -37,6 +37,14 @@ impl<'a> Section<'a> {
         Err(SceneError::UnknownKey { key, allowed })
     }
 
+    /// Refuses any key.
+    pub(super) fn allow_none(self) -> Result<Self, SceneError> {
+        match self.items().first() {
+            Some(item) => Err(item.conflict("this table is empty; leave it out")),
+            None => Ok(self),
+        }
+    }
+
     /// The table under `name`, which every scene needs.
     pub(super) fn section(&self, name: &str) -> Result<Section<'a>, SceneError> {
         let expected = format!("a table, written [{name}]");

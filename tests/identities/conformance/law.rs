@@ -1,6 +1,6 @@
 //! Constitutive laws.
 
-use materialpoint::law::{ConstitutiveLaw, Hill, LinearElastic, Moduli, NeoHookean};
+use materialpoint::law::{ConstitutiveLaw, Hill, LinearElastic, Logarithmic, Moduli, NeoHookean};
 use materialpoint::scalar::Scalar;
 use materialpoint::testing::{Failure, LawClaims, LawSample, Property, check_law};
 use nalgebra::SMatrix;
@@ -31,8 +31,8 @@ fn hill<const D: usize>() -> LawClaims {
     }
 }
 
-/// The neo-Hookean solid keeps everything.
-fn neo_hookean() -> LawClaims {
+/// The neo-Hookean solid keeps everything, and so does the logarithmic law in its one dimension.
+fn hyperelastic() -> LawClaims {
     LawClaims {
         energy_is_work: true,
         wave_speed_is_sharp: true,
@@ -44,14 +44,16 @@ fn laws<const D: usize>() -> Result<(), Failure> {
     let moduli = moduli::<f64>();
     check_law::<f64, D, _>(&LinearElastic { moduli }, &sample(), &SMALL_STRAIN)?;
     check_law::<f64, D, _>(&Hill { moduli }, &sample(), &hill::<D>())?;
-    check_law::<f64, D, _>(&NeoHookean { moduli }, &sample(), &neo_hookean())
+    check_law::<f64, D, _>(&NeoHookean { moduli }, &sample(), &hyperelastic())
 }
 
 #[test]
 fn our_laws_keep_their_claims() -> Result<(), Failure> {
     laws::<1>()?;
     laws::<2>()?;
-    laws::<3>()
+    laws::<3>()?;
+    let moduli = moduli::<f64>();
+    check_law::<f64, 1, _>(&Logarithmic { moduli }, &sample(), &hyperelastic())
 }
 
 #[test]
@@ -59,7 +61,8 @@ fn our_laws_keep_their_claims_in_single_precision() -> Result<(), Failure> {
     let moduli = moduli::<f32>();
     check_law::<f32, 1, _>(&LinearElastic { moduli }, &sample(), &SMALL_STRAIN)?;
     check_law::<f32, 1, _>(&Hill { moduli }, &sample(), &hill::<1>())?;
-    check_law::<f32, 1, _>(&NeoHookean { moduli }, &sample(), &neo_hookean())
+    check_law::<f32, 1, _>(&NeoHookean { moduli }, &sample(), &hyperelastic())?;
+    check_law::<f32, 1, _>(&Logarithmic { moduli }, &sample(), &hyperelastic())
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

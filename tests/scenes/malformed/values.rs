@@ -46,6 +46,8 @@ pub(super) const COMBINATIONS: &[Case] = &[
     ("subpoints of a B-spline", Set("method.subpoints=1"), &["method.subpoints = 1", "\"dual-domain\"", "\"shepard\" only"]),
     ("neo-hookean in small strain", Set("material.strain=small\nmaterial.law={neo-hookean={youngs_modulus=1}}"),
      &["material.strain = \"small\"", "neo-hookean", "\"large\""]),
+    ("logarithmic in small strain", Set("material.strain=small\nmaterial.law={logarithmic={youngs_modulus=1}}"),
+     &["material.strain = \"small\"", "logarithmic", "\"large\""]),
     ("a stressed neo-hookean body", Set("material.law={neo-hookean={youngs_modulus=1}}"),
      &["body.0.stress = \"-10*x\"", "starts undeformed"]),
     ("two laws", Set("material.law.neo-hookean.youngs_modulus=1"), &["material.law = {", "exactly one"]),
