@@ -13,6 +13,7 @@
 //! | [`XieLeo`](two_phase::XieLeo) | closed form | consolidation, large strain, without inertia |
 //! | [`StandingWave`](two_phase::StandingWave) | closed form | damped waves in saturated soil, small strain |
 //! | [`SaturatedColumn`](two_phase::SaturatedColumn) | closed form | saturated column under its weight, at rest |
+//! | [`LagrangianSoil`](two_phase::LagrangianSoil) | converged numerically, with an estimate of its own error | saturated soil in motion, any elastic law |
 //!
 //! Soil has its own state and trait, see [`two_phase`].
 //!

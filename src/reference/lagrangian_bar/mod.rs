@@ -13,6 +13,7 @@ use super::{Hyperelastic, Reference, ReferenceError, State, UniaxialLaw, check};
 use nystrom::{Motion, Nystrom, STABILITY_LIMIT};
 use operator::Operator;
 pub use problem::{BarProblem, End};
+pub(super) use resolution::HIGHEST_DEGREE;
 pub use resolution::Resolution;
 
 /// Part of the stable step that is taken.

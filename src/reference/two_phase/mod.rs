@@ -19,6 +19,7 @@
 
 mod consolidation;
 mod diffusion;
+mod lagrangian_soil;
 mod saturated_column;
 mod soil;
 mod standing_wave;
@@ -28,6 +29,7 @@ mod xie_leo;
 
 use super::ReferenceError;
 pub use consolidation::Consolidation;
+pub use lagrangian_soil::{LagrangianSoil, SoilEnd, SoilProblem};
 pub use saturated_column::SaturatedColumn;
 pub use soil::Soil;
 pub use standing_wave::StandingWave;
