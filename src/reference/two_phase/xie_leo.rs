@@ -213,6 +213,15 @@ mod tests {
         }
     }
 
+    /// The permeability that report 18-2 prints settles by a sixth of what it prints; from the same evaluation.
+    #[test]
+    fn printed_permeability_settles_less() {
+        let layer = XieLeo::new(1.0, 1e6, -5e5, report_soil(1e-5, 3e7)).unwrap();
+        let mut layer = layer.with_compressible_liquid();
+        layer.advance(0.4).unwrap();
+        assert_close(layer.at(1.0).solid_displacement, -8.906_053_178_382_733e-3, 1e-15);
+    }
+
     /// p_t = (K_w / (n lambda)) ((1-n) v_s' + n v_w').
     #[test]
     fn compressible_liquid_stores() {
