@@ -143,3 +143,47 @@ impl Mesh {
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh(refined: [bool; 2], level: usize) -> Mesh {
+        let resolution = Resolution {
+            elements: 2,
+            degree: 3,
+        };
+        Mesh::new(4.0, resolution, refined, level)
+    }
+
+    #[test]
+    fn refined_ends_are_halved() {
+        assert_eq!(mesh([true; 2], 0).edges, [0.0, 2.0, 4.0]);
+        assert_eq!(mesh([false, true], 2).edges, [0.0, 2.0, 3.0, 3.5, 4.0]);
+        assert_eq!(mesh([true, true], 1).edges, [0.0, 1.0, 2.0, 3.0, 4.0]);
+    }
+
+    /// On unequal elements: a cubic is integrated, differentiated and interpolated exactly.
+    #[test]
+    fn cubics_are_exact() {
+        let mesh = mesh([true, false], 3);
+        let integral: f64 = mesh.quadrature().map(|(x, weight)| weight * x.powi(3)).sum();
+        assert!((integral - 64.0).abs() < 1e-12, "{integral}");
+        let nodal: Vec<f64> = (0..mesh.node_count())
+            .map(|node| mesh.node(node).powi(3))
+            .collect();
+        for (element, first) in mesh.first_nodes().enumerate() {
+            let values = &nodal[first..first + mesh.width()];
+            for (q, slope) in mesh.derivatives(element, values).enumerate() {
+                let x = mesh.point(element * mesh.width() + q);
+                assert!((slope - 3.0 * x * x).abs() < 1e-12, "{slope} at {x}");
+            }
+        }
+        for (x, expected) in [(-1.0, 0.0), (0.25, 0.25), (0.3, 0.3), (3.9, 3.9), (9.0, 4.0)] {
+            let (element, xi) = mesh.locate(x);
+            let first = element * (mesh.width() - 1);
+            let value = mesh.interpolate(xi, &nodal[first..first + mesh.width()]);
+            assert!((value - f64::powi(expected, 3)).abs() < 1e-12, "{value} at {x}");
+        }
+    }
+}
