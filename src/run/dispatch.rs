@@ -4,6 +4,7 @@ use nalgebra::SVector;
 
 use super::error::RunError;
 use super::initial::{Initial, initial};
+use super::rate_law::RateLaw;
 use crate::basis::BasisFamily;
 use crate::error::{GridError, SetupError};
 use crate::grid::Grid;
@@ -46,11 +47,11 @@ impl Start<'_> {
         match self.scene.material.law {
             Law::LinearElastic { youngs_modulus } => {
                 let moduli = uniaxial(youngs_modulus)?;
-                self.with_law(LinearElastic { moduli })
+                self.with_law(RateLaw::LinearElastic(LinearElastic { moduli }))
             }
             Law::Hill { youngs_modulus } => {
                 let moduli = uniaxial(youngs_modulus)?;
-                self.with_law(Hill { moduli })
+                self.with_law(RateLaw::Hill(Hill { moduli }))
             }
             Law::NeoHookean { youngs_modulus } => {
                 let moduli = uniaxial(youngs_modulus)?;
@@ -58,7 +59,7 @@ impl Start<'_> {
             }
             Law::Logarithmic { youngs_modulus } => {
                 let moduli = uniaxial(youngs_modulus)?;
-                self.with_law(Logarithmic { moduli })
+                self.with_law(RateLaw::Logarithmic(Logarithmic { moduli }))
             }
         }
     }

@@ -9,6 +9,7 @@ mod loads;
 mod march;
 mod norms;
 mod particle_table;
+mod rate_law;
 mod reference;
 mod schedule;
 mod state;

@@ -5,5 +5,6 @@ mod consolidation;
 mod critical_step;
 mod drag;
 mod equilibrium;
+mod large;
 mod random;
 mod standing_wave;

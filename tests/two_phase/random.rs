@@ -38,6 +38,9 @@ impl MethodVisitor<f64> for &Scene {
         B: BasisFamily<f64, 1> + Send + 'static,
         R: Reconstruction<f64, 1> + Clone + Send + 'static,
     {
+        if R::PARTICLE_MATRIX {
+            unreachable!("{}", materialpoint::error::SetupError::OnePhaseOnly);
+        }
         let grid = Grid::new(vector![0.0], vector![1.0], [self.cells]).unwrap();
         let mut x = self.layout.clone();
         x.sort_by(f64::total_cmp);
