@@ -107,25 +107,29 @@ fn a_saturated_column_comes_to_rest_under_its_weight() {
     assert!(found["liquid_velocity"].max < 1e-6);
 }
 
-/// Large strain, from the start of the load on, against Xie and Leo's solution and against the converged one with inertia.
-/// Before the pressure has spread over a few cells neither says much, so a coarse grid runs for long.
+/// Large strain, from the start of the load on, on a coarse grid: against the converged solution of the same equations, and
+/// against Xie and Leo's, which knows neither inertia nor the liquid's compression and is therefore the farther one.
 #[test]
 fn large_strain_follows_both_of_its_references() {
     let method = Method::new(BSPLINE, TAYLOR);
-    let coarse = ["grid.cells=[30]", "body.0.particles_per_cell=[8]"];
+    let coarse = ["grid.cells=[60]", "body.0.particles_per_cell=[8]"];
     let against = |reference: &str| {
-        summary(
-            "consolidation-large",
-            method,
-            &[&coarse[..], &[reference]].concat(),
-        )
+        let set = [&coarse[..], &[reference]].concat();
+        summary("consolidation-large", method, &set).errors
     };
     let exact = against("reference={xie-leo={load=-5e5}}");
     let converged = against("reference={consolidation={load=-5e5}}");
-    assert!(exact.errors["solid_displacement"].relative_l2 < 0.015);
-    assert!(converged.errors["solid_displacement"].relative_l2 < 0.005);
-    assert!(converged.errors["effective_stress"].relative_l2 < 0.05);
-    assert!(converged.errors["pore_pressure"].relative_l2 < 0.015);
+    let bounds = [
+        ("solid_displacement", 0.004),
+        ("effective_stress", 0.025),
+        ("pore_pressure", 0.008),
+        ("liquid_velocity", 0.07),
+    ];
+    for (field, bound) in bounds {
+        let [exact, converged] = [&exact, &converged].map(|errors| errors[field].relative_l2);
+        assert!(converged < bound, "{field}: {converged:e}");
+        assert!(converged < exact && exact < 4.0 * bound, "{field}: {exact:e}");
+    }
 }
 
 /// The wave of both phases together bears the load in the ratio of E to K/n behind its front.
