@@ -110,7 +110,10 @@ fn check(permeability: f64, settlement: f64, tolerance: f64) {
             1e-5,
         );
         println!("{method:<22} {found:?}");
-        assert!((found.settlement / top - 1.0).abs() < tolerance, "{method}: {found:?}");
+        assert!(
+            (found.settlement / top - 1.0).abs() < tolerance,
+            "{method}: {found:?}"
+        );
         assert!(
             found.mass <= 1e-12 && found.momentum <= 1e-12,
             "{method}: {found:?}"
