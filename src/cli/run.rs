@@ -93,9 +93,14 @@ fn summary_text(outcome: &Outcome) -> String {
     ));
     let width = errors.keys().map(|field| field.len()).fold(13, usize::max);
     for (field, norms) in errors {
+        // Nothing is relative to a reference that is zero.
+        let relative = match norms.relative_l2.is_finite() {
+            true => format!("relative L2 {:.3e}, ", norms.relative_l2),
+            false => String::new(),
+        };
         lines.push(format!(
-            "  {field:<width$} error: relative L2 {:.3e}, RMS {:.3e}, largest {:.3e}",
-            norms.relative_l2, norms.rms, norms.max
+            "  {field:<width$} error: {relative}RMS {:.3e}, largest {:.3e}",
+            norms.rms, norms.max
         ));
     }
     for (phase, errors) in conservation {

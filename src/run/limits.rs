@@ -40,7 +40,7 @@ pub(super) fn warnings(
     critical: impl FnOnce() -> Result<Option<CriticalStep<f64>>, RunError>,
 ) -> Result<Vec<String>, RunError> {
     let mut warnings: Vec<String> = method_warning(scene).into_iter().collect();
-    // Half the critical step or less is what "auto" takes at most.
+    // "auto" stays below by itself.
     if let StepSize::Fixed(_) = scene.time.step
         && let Some(limit) = critical()?
         && schedule.dt > limit.step
