@@ -74,7 +74,7 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
             ),
             (
                 "xie-leo",
-                "two phases: the same at large strain, exact without inertia (logarithmic)",
+                "two phases: the same at large strain (logarithmic), no inertia, incompressible",
             ),
             (
                 "standing-wave",

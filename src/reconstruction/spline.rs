@@ -168,9 +168,10 @@ impl<T: Scalar> CubicSpline<T> {
         let n = self.knots.len();
         let six = T::lit(6.0);
         self.curvatures[..stride].fill(T::zero());
+        let mut left = six / self.gap(0);
         for i in 1..n - 1 {
             let factor = self.factors[i - 1];
-            let (left, right) = (six / self.gap(i - 1), six / self.gap(i));
+            let right = six / self.gap(i);
             for c in 0..stride {
                 let at = |i: usize| i * stride + c;
                 let (before, here, after) =
@@ -179,6 +180,7 @@ impl<T: Scalar> CubicSpline<T> {
                 let lower = factor.lower * self.curvatures[at(i - 1)];
                 self.curvatures[at(i)] = (jump - lower) * factor.inverse_pivot;
             }
+            left = right;
         }
         for i in (1..n - 2).rev() {
             let upper = self.factors[i - 1].upper;

@@ -2,8 +2,6 @@
 
 use super::error::RunError;
 use super::schedule::Schedule;
-use crate::mass::VelocityMass;
-use crate::phase::Drag;
 use crate::scene::{Basis, Phases, ReconstructionKind, Scene, StepSize};
 use crate::stepper::{CriticalStep, Mechanism};
 
@@ -59,25 +57,15 @@ pub(super) fn warnings(
 /// A warning of a combination of method and model that cannot be relied on, if the scene asks for one: `docs/two-phase.md` has
 /// the figures.
 fn method_warning(scene: &Scene) -> Option<String> {
-    let Phases::Two(soil) = scene.material.phases else {
+    let Phases::Two(_) = scene.material.phases else {
         return None;
     };
     let method = &scene.method;
     let spline = method.reconstruction == ReconstructionKind::Spline;
-    if spline && method.basis == Basis::Linear && scene.material.law.large_strain() {
-        return Some(
-            "method: the cubic spline with linear functions does not bear the load of a surface that moves through cells; \
-             take shepard or taylor, or another basis"
-                .to_owned(),
-        );
-    }
-    let fitted = method.reconstruction != ReconstructionKind::Shepard;
-    if soil.drag == Drag::Explicit && fitted && method.velocity_mass != VelocityMass::Lumped {
-        return Some(format!(
-            "method.velocity_mass = \"{}\" with explicit drag may be unstable below the largest stable step where the drag \
-             limits it; \"lumped\" is not, and material.drag = \"implicit\" has no such limit",
-            method.velocity_mass.name()
-        ));
-    }
-    None
+    let unusable = spline && method.basis == Basis::Linear && scene.material.law.large_strain();
+    unusable.then(|| {
+        "method: the cubic spline with linear functions does not bear the load of a surface that moves through cells; take \
+         shepard or taylor, or another basis"
+            .to_owned()
+    })
 }

@@ -157,7 +157,7 @@ where
     pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
         let Setup {
             grid,
-            basis,
+            mut basis,
             reconstruction,
             law,
             phase,
@@ -178,6 +178,9 @@ where
                 particle,
                 position: values(&particles.position[particle]),
             })?;
+        if B::TAKES_IN_CELLS {
+            basis.take_in(&grid, &bins);
+        }
         // Overwritten walls would tear at an acceleration that knows nothing of them.
         let velocity_mass = match R::PARTICLE_MATRIX {
             true => VelocityMass::Constrained,

@@ -6,10 +6,12 @@ use materialpoint::law::{Hill, Moduli};
 use materialpoint::mass::VelocityMass;
 use materialpoint::method::{Method, MethodVisitor};
 use materialpoint::particles::{Particles, lattice};
-use materialpoint::phase::OnePhase;
+use materialpoint::phase::{Drag, OnePhase};
 use materialpoint::reconstruction::Reconstruction;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
 use nalgebra::vector;
+
+use crate::two_phase::column::{AT_REST, Column, loaded, table_6};
 
 /// The large bar.
 struct LargeBar(VelocityMass);
@@ -41,6 +43,36 @@ impl MethodVisitor<f64> for LargeBar {
             surface: Vec::new(),
         };
         Box::new(Stepper::new(setup).unwrap())
+    }
+}
+
+#[test]
+fn no_two_phase_step_after_the_first_allocates() {
+    let (soil, law) = table_6(1e-4);
+    for method in Method::NINE {
+        for mass in [
+            VelocityMass::Consistent,
+            VelocityMass::Constrained,
+            VelocityMass::Lumped,
+        ] {
+            let column = Column {
+                cells: 20,
+                per_cell: 8,
+                soil,
+                law,
+                drag: Drag::Implicit,
+                mass,
+                surface: true,
+            };
+            let mut simulation = column.build(method, |_| AT_REST);
+            simulation.step(1e-6, &loaded(-1e4)).unwrap();
+            let later = allocation_counter::measure(|| {
+                for _ in 0..100 {
+                    simulation.step(1e-6, &loaded(-1e4)).unwrap();
+                }
+            });
+            assert_eq!(later.count_total, 0, "{method} {mass:?}");
+        }
     }
 }
 

@@ -55,29 +55,23 @@ fn initial_data_from_the_dofs_have_the_order_of_the_basis() {
     }
 }
 
-/// Half a second of draining from the exact series at 0.5 s: relative L2 errors of pore pressure and effective stress.
+/// Half a second of draining from the exact series at 0.5 s: the scene is the run that `two_phase::consolidation` holds for all
+/// nine methods.
 #[test]
-fn nine_methods_have_the_errors_of_the_table() {
-    let table = [
-        (LINEAR, [SHEPARD, TAYLOR, SPLINE].as_slice(), 6.9e-3, 1.1e-2),
-        (DUAL_DOMAIN, &[SHEPARD], 4.6e-3, 7.0e-3),
-        (DUAL_DOMAIN, &[TAYLOR, SPLINE], 2.5e-3, 3.8e-3),
-        (BSPLINE, &[SHEPARD], 9.2e-4, 1.4e-3),
-        (BSPLINE, &[TAYLOR, SPLINE], 8.1e-4, 1.2e-3),
-    ];
-    for (basis, reconstructions, pressure, stress) in table {
-        for &reconstruction in reconstructions {
-            let method = Method::new(basis, reconstruction);
-            let found = summary("consolidation", method, &[]).errors;
-            let error = |field: &str| found[field].relative_l2;
-            assert_close(&format!("{method} p"), error("pore_pressure"), pressure, 0.1);
-            assert_close(
-                &format!("{method} stress"),
-                error("effective_stress"),
-                stress,
-                0.05,
-            );
-        }
+fn the_scene_is_the_run_that_measures_the_method() {
+    for (method, pressure, stress) in [
+        (Method::new(LINEAR, SHEPARD), 6.9e-3, 1.1e-2),
+        (Method::new(BSPLINE, TAYLOR), 8.1e-4, 1.2e-3),
+    ] {
+        let found = summary("consolidation", method, &[]).errors;
+        let error = |field: &str| found[field].relative_l2;
+        assert_close(&format!("{method} p"), error("pore_pressure"), pressure, 0.05);
+        assert_close(
+            &format!("{method} stress"),
+            error("effective_stress"),
+            stress,
+            0.05,
+        );
     }
 }
 

@@ -186,12 +186,15 @@ where
     }
 }
 
+/// Of solid and liquid.
+type Momenta<T, const D: usize> = Pair<SVector<T, D>, SVector<T, D>>;
+
 /// Momenta of solid and liquid of each particle.
 #[inline(always)]
 fn momenta<'a, T, const D: usize, S, P>(
     phase: &'a P,
     particles: &'a Particles<T, D, S, P::Particle>,
-) -> impl Fn(usize) -> Pair<SVector<T, D>, SVector<T, D>> + 'a
+) -> impl Fn(usize) -> Momenta<T, D> + 'a
 where
     T: Scalar,
     P: Phase<T, D>,
@@ -207,7 +210,7 @@ where
 fn amounts<'a, T, const D: usize, S, P>(
     phase: &'a P,
     particles: &'a Particles<T, D, S, P::Particle>,
-) -> impl Fn(usize) -> Pair<Pair<T, T>, Pair<SVector<T, D>, SVector<T, D>>> + 'a
+) -> impl Fn(usize) -> Pair<Pair<T, T>, Momenta<T, D>> + 'a
 where
     T: Scalar,
     P: Phase<T, D>,
