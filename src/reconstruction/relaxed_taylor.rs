@@ -9,7 +9,8 @@ use crate::taylor::{CellFit, taylor_functions};
 /// Share of the unseen part of a particle's value that a step takes away.
 const DEFAULT_RELAXATION: f64 = 0.1;
 
-/// Taylor least squares for long runs, our own: published TLS gains energy wherever particles cross cell edges.
+/// Taylor least squares for long runs, our own: published TLS gains energy wherever particles cross cell edges
+/// or do not lie evenly in their cells.
 ///
 /// Four things together: mass and momentum of the DOFs straight from the particles; their consistent mass matrix in both the
 /// acceleration and the velocity; the stress by the free fit and Gauss quadrature, as published; and in every step each

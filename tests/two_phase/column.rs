@@ -174,7 +174,10 @@ pub fn fields(simulation: &dyn Simulation<1>) -> Vec<TwoPhaseState> {
         .collect()
 }
 
-pub const FIELDS: [(&str, fn(&TwoPhaseState) -> f64); 5] = [
+/// Picks a field.
+pub type Field = fn(&TwoPhaseState) -> f64;
+
+pub const FIELDS: [(&str, Field); 5] = [
     ("u_s", |s| s.solid_displacement),
     ("v_s", |s| s.solid_velocity),
     ("v_w", |s| s.liquid_velocity),

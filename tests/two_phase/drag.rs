@@ -11,7 +11,7 @@ use materialpoint::method::Method;
 use materialpoint::phase::Drag;
 use materialpoint::reference::two_phase::{StandingWave, TwoPhaseReference, TwoPhaseState};
 
-use super::column::{Column, drained, fields, table_6};
+use super::column::{Column, Field, drained, fields, table_6};
 
 const START: f64 = 1e-4;
 const LENGTH: f64 = 4e-4;
@@ -43,7 +43,7 @@ fn run(method: Method, drag: Drag, steps: usize) -> Vec<TwoPhaseState> {
     fields(simulation.as_ref())
 }
 
-fn difference(a: &[TwoPhaseState], b: &[TwoPhaseState], field: fn(&TwoPhaseState) -> f64) -> f64 {
+fn difference(a: &[TwoPhaseState], b: &[TwoPhaseState], field: Field) -> f64 {
     let (mut error, mut square) = (0.0, 0.0);
     for (a, b) in a.iter().zip(b) {
         error += (field(a) - field(b)).powi(2);
@@ -57,8 +57,7 @@ fn implicit_drag_at_the_waves_step_gives_the_resolved_answer() {
     for method in [Method::NINE[0], Method::NINE[4], Method::NINE[7]] {
         let explicit = run(method, Drag::Explicit, 1_000_000);
         let implicit = run(method, Drag::Implicit, 20);
-        let fields: [(&str, fn(&TwoPhaseState) -> f64); 2] =
-            [("p", |s| s.pore_pressure), ("u", |s| s.solid_displacement)];
+        let fields: [(&str, Field); 2] = [("p", |s| s.pore_pressure), ("u", |s| s.solid_displacement)];
         for (name, field) in fields {
             let found = difference(&implicit, &explicit, field);
             println!("{method:<22} {name}: {found:.1e}");

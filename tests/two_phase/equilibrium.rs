@@ -9,7 +9,7 @@ use materialpoint::stepper::{FaceCondition, Forcing, Simulation};
 use materialpoint::taylor::{CellFit, DEFAULT_TOLERANCE};
 use nalgebra::vector;
 
-use super::column::{AT_REST, BASE, Column, TOP, drained, fields, loaded, table_6};
+use super::column::{AT_REST, BASE, Column, Field, TOP, drained, fields, loaded, table_6};
 
 const CELLS: usize = 20;
 const PER_CELL: usize = 4;
@@ -29,7 +29,7 @@ fn column(permeability: f64, per_cell: usize) -> Column<LinearElastic<f64>> {
 
 /// Mean of the fit of a field in each cell: of a linear field its mean over the particles, and what the force of TLS
 /// integrates.
-fn cell_means(simulation: &dyn Simulation<1>, per_cell: usize, field: fn(&TwoPhaseState) -> f64) -> Vec<f64> {
+fn cell_means(simulation: &dyn Simulation<1>, per_cell: usize, field: Field) -> Vec<f64> {
     let values: Vec<f64> = fields(simulation).iter().map(field).collect();
     let positions = simulation.particles().position;
     let cells = positions
@@ -65,7 +65,7 @@ fn self_weight(method: Method, per_cell: usize) -> [f64; 2] {
             .step(dt, &drained().with_body_force(vector![now]))
             .unwrap();
     }
-    let stresses: [fn(&TwoPhaseState) -> f64; 2] = [|s| s.pore_pressure, |s| s.effective_stress];
+    let stresses: [Field; 2] = [|s| s.pore_pressure, |s| s.effective_stress];
     stresses.map(|field| {
         let largest = field(&exact.at(0.0)).abs();
         let means = cell_means(simulation.as_ref(), per_cell, field);
