@@ -4,7 +4,7 @@ use materialpoint::law::LinearElastic;
 use materialpoint::mass::VelocityMass;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::phase::Drag;
-use materialpoint::reference::two_phase::{SaturatedColumn, Soil, TwoPhaseReference, TwoPhaseState};
+use materialpoint::reference::two_phase::{SaturatedColumn, Soil, TwoPhaseReference};
 use materialpoint::stepper::{FaceCondition, Forcing, Simulation};
 use materialpoint::taylor::{CellFit, DEFAULT_TOLERANCE};
 use nalgebra::vector;
