@@ -126,6 +126,33 @@ fn large_strain_follows_both_of_its_references() {
     }
 }
 
+/// Hill's rate with a constant permeability, the report's own model at large strain: against the converged solution.
+#[test]
+fn large_strain_with_hills_rate_follows_the_converged_solution() {
+    let set = [
+        "grid.cells=[60]",
+        "body.0.particles_per_cell=[8]",
+        "material.law={linear-elastic={youngs_modulus=1e6}}",
+        "material.permeability_exponent=0",
+        "material.drag=implicit",
+        "time.step=2e-5",
+        "reference={consolidation={load=-5e5}}",
+    ];
+    for (basis, stress, pressure) in [(DUAL_DOMAIN, 2.97e-2, 9.47e-3), (BSPLINE, 1.98e-2, 6.94e-3)] {
+        let found = summary("consolidation-large", Method::new(basis, TAYLOR), &set);
+        let error = |field: &str| found.errors[field].relative_l2;
+        assert_close(&format!("{basis} stress"), error("effective_stress"), stress, 0.1);
+        assert_close(&format!("{basis} p"), error("pore_pressure"), pressure, 0.1);
+        assert!(error("solid_displacement") < 3e-3, "{basis}");
+        assert!(
+            found
+                .conservation
+                .values()
+                .all(|c| c.mass < 1e-12 && c.momentum_scaled < 1e-12)
+        );
+    }
+}
+
 /// The wave of both phases together bears the load in the ratio of E to K/n behind its front.
 #[test]
 fn a_sudden_load_is_shared_as_the_stiffnesses_are() {
