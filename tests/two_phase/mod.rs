@@ -3,6 +3,7 @@
 pub mod column;
 mod consolidation;
 mod critical_step;
+mod dimensions;
 mod drag;
 mod equilibrium;
 mod large;

@@ -1,0 +1,107 @@
+//! Two phases in two dimensions: the column lying in a strip.
+//!
+//! Walls on all sides, rollers along the strip, Poisson's ratio 0, a motion along x only: every particle of the strip must do what
+//! the column's particle at its x does, to round-off.
+
+use materialpoint::basis::{BSpline, BasisFamily, Linear};
+use materialpoint::grid::{Face, Grid};
+use materialpoint::law::{LinearElastic, Moduli};
+use materialpoint::mass::VelocityMass;
+use materialpoint::particles::{Particles, lattice};
+use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
+use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
+use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
+use nalgebra::SVector;
+
+const PHASE: TwoPhase<f64> = TwoPhase {
+    porosity: 0.4,
+    solid_density: 2.6e3,
+    liquid_density: 1e3,
+    liquid_bulk_modulus: 3e8,
+    permeability: 1e-3,
+    permeability_exponent: 0.0,
+    gravity: 9.81,
+    drag: Drag::Implicit,
+};
+
+/// Velocities along x, effective stress, pressure, largest conservation errors of the particles of the lowest row.
+fn run<const D: usize, B, R>(basis: B, reconstruction: R, mass: VelocityMass) -> (Vec<[f64; 4]>, f64)
+where
+    B: BasisFamily<f64, D>,
+    R: Reconstruction<f64, D>,
+{
+    let max = SVector::from_fn(|a, _| if a == 0 { 1.0 } else { 0.3 });
+    let cells = std::array::from_fn(|a| if a == 0 { 10 } else { 3 });
+    let grid = Grid::new(SVector::zeros(), max, cells).unwrap();
+    let points = lattice(&grid, grid.min(), grid.max(), [4; D]);
+    let mut particles: Particles<f64, D, (), PoreLiquid<f64, D>> =
+        Particles::at_rest(&points, PHASE.dry_density());
+    for p in 0..particles.len() {
+        let s = (std::f64::consts::PI * particles.position[p][0]).sin();
+        particles.velocity[p][0] = 1e-3 * s;
+        particles.phase[p].velocity[0] = 2e-3 * s;
+    }
+    let moduli = Moduli::from_young(1e7, 0.0).unwrap();
+    let mut stepper = Stepper::new(Setup {
+        grid,
+        basis,
+        reconstruction,
+        law: LinearElastic { moduli },
+        phase: PHASE,
+        velocity_mass: mass,
+        particles,
+        surface: Vec::new(),
+    })
+    .unwrap();
+    let walls = Face::all::<D>().fold(Forcing::none(), |f, face| {
+        f.with_face(face, FaceCondition::roller(face.axis))
+    });
+    for _ in 0..100 {
+        stepper.step(1e-5, &walls).unwrap();
+    }
+    let particles = stepper.particles();
+    let row = (0..40).map(|p| {
+        let liquid = particles.phase[p];
+        [
+            particles.velocity[p][0],
+            liquid.velocity[0],
+            particles.stress[p][(0, 0)],
+            liquid.pressure,
+        ]
+    });
+    let found = stepper.diagnostics();
+    let kept = [found.conservation, found.liquid_conservation.unwrap()];
+    let worst = kept.map(|c| c.mass.max(c.momentum_scaled));
+    (row.collect(), worst[0].max(worst[1]))
+}
+
+#[track_caller]
+fn compare((line, kept_1): (Vec<[f64; 4]>, f64), (strip, kept_2): (Vec<[f64; 4]>, f64)) {
+    for k in 0..4 {
+        let largest = line.iter().fold(0.0_f64, |m, v| m.max(v[k].abs()));
+        assert!(largest > 0.0);
+        for (a, b) in line.iter().zip(&strip) {
+            assert!((a[k] - b[k]).abs() <= 1e-10 * largest, "{k}: {} {}", a[k], b[k]);
+        }
+    }
+    assert!(kept_1 < 1e-13 && kept_2 < 1e-13, "{kept_1} {kept_2}");
+}
+
+#[test]
+fn a_strip_does_what_the_column_does() {
+    let lumped = VelocityMass::Lumped;
+    compare(
+        run::<1, _, _>(Linear, Shepard, lumped),
+        run::<2, _, _>(Linear, Shepard, lumped),
+    );
+    compare(
+        run::<1, _, _>(BSpline::<2>, Shepard, lumped),
+        run::<2, _, _>(BSpline::<2>, Shepard, lumped),
+    );
+    for mass in [lumped, VelocityMass::Consistent] {
+        compare(
+            run::<1, _, _>(Linear, Taylor::<f64, 1, 3>::new(), mass),
+            run::<2, _, _>(Linear, Taylor::<f64, 2, 6>::new(), mass),
+        );
+    }
+}
