@@ -52,17 +52,28 @@ impl<L: ConstitutiveLaw<f64, 1> + Clone + 'static> Column<L> {
 
     /// The column in `method`, with the initial state of each particle.
     pub fn build(&self, method: Method, initial: impl Fn(f64) -> TwoPhaseState) -> Box<dyn Simulation<1>> {
-        method
-            .dispatch(Build {
-                column: self,
-                initial,
-            })
-            .unwrap()
+        self.build_with_base(method, false, initial)
+    }
+
+    /// The same with a base that is a surface too, where liquid may pass.
+    pub fn build_with_base(
+        &self,
+        method: Method,
+        base_is_surface: bool,
+        initial: impl Fn(f64) -> TwoPhaseState,
+    ) -> Box<dyn Simulation<1>> {
+        let build = Build {
+            column: self,
+            base_is_surface,
+            initial,
+        };
+        method.dispatch(build).unwrap()
     }
 }
 
 struct Build<'a, L, I> {
     column: &'a Column<L>,
+    base_is_surface: bool,
     initial: I,
 }
 
@@ -96,16 +107,19 @@ where
             particles.phase[p].velocity[0] = state.liquid_velocity;
             particles.phase[p].pressure = state.pore_pressure;
         }
-        let surface = if column.surface {
-            vec![SurfacePoint {
-                particle: particles.len() - 1,
-                face: TOP,
+        let ends = [
+            (self.base_is_surface, 0, BASE),
+            (column.surface, particles.len() - 1, TOP),
+        ];
+        let there = ends.into_iter().filter(|end| end.0);
+        let surface = there
+            .map(|(_, particle, face)| SurfacePoint {
+                particle,
+                face,
                 area: 1.0,
                 reach: 0.5,
-            }]
-        } else {
-            Vec::new()
-        };
+            })
+            .collect();
         Box::new(
             Stepper::new(Setup {
                 grid,

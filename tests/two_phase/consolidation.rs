@@ -9,9 +9,10 @@
 use materialpoint::mass::VelocityMass;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::phase::Drag;
-use materialpoint::reference::two_phase::{Consolidation, TwoPhaseReference};
+use materialpoint::reference::two_phase::{Consolidation, TwoPhaseReference, TwoPhaseState};
+use materialpoint::stepper::PoreCondition;
 
-use super::column::{Column, errors, loaded, table_6};
+use super::column::{BASE, Column, Field, errors, fields, loaded, table_6};
 
 const LOAD: f64 = -1e4;
 const STEP: f64 = 5e-6;
@@ -121,4 +122,56 @@ fn dual_domain_has_the_errors_of_the_table() {
 #[test]
 fn b_splines_have_the_errors_of_the_table() {
     compare(BSPLINE);
+}
+
+/// A fixed base that liquid passes (k = 1e-4 m/s, from 0.5 s to 0.6 s): the layer drains to both sides, like two layers of half the
+/// height back to back that move with the middle. Expected: the series of half the height, with the errors of twice as coarse a
+/// grid.
+#[test]
+fn a_drained_wall_lets_the_layer_drain_to_both_sides() {
+    let (soil, law) = table_6(1e-4);
+    let column = Column {
+        cells: 40,
+        per_cell: 4,
+        soil,
+        law,
+        drag: Drag::Implicit,
+        mass: VelocityMass::Consistent,
+        surface: true,
+    };
+    let mut half = Consolidation::new(0.5, 1e7, LOAD, soil).unwrap();
+    half.advance(0.5).unwrap();
+    let both_sides = |half: &Consolidation, x: f64| {
+        let (state, top) = (half.at((x - 0.5).abs()), half.at(0.5));
+        let side = (x - 0.5).signum();
+        TwoPhaseState {
+            solid_displacement: top.solid_displacement + side * state.solid_displacement,
+            solid_velocity: top.solid_velocity + side * state.solid_velocity,
+            liquid_velocity: top.solid_velocity + side * state.liquid_velocity,
+            ..state
+        }
+    };
+    let forcing = loaded(LOAD).with_pores(BASE, PoreCondition::Pressure(0.0));
+    for method in Method::NINE {
+        let mut simulation = column.build_with_base(method, true, |x| both_sides(&half, x));
+        for _ in 0..20_000 {
+            simulation.step(STEP, &forcing).unwrap();
+        }
+        let mut end = half.clone();
+        end.advance(0.6).unwrap();
+        let x0 = simulation.particles().initial_position;
+        let found = fields(simulation.as_ref());
+        let error = |field: Field| {
+            let (mut error, mut square) = (0.0, 0.0);
+            for (x, found) in x0.iter().zip(&found) {
+                let exact = field(&both_sides(&end, x[0]));
+                error += (field(found) - exact).powi(2);
+                square += exact * exact;
+            }
+            f64::sqrt(error / square)
+        };
+        let (p, u) = (error(|s| s.pore_pressure), error(|s| s.solid_displacement));
+        println!("{method:<22} p {p:.2e} u {u:.2e}");
+        assert!(p < 5e-3 && u < 5e-4, "{method}: {p:.2e} {u:.2e}");
+    }
 }
