@@ -4,8 +4,8 @@ use materialpoint::law::LinearElastic;
 use materialpoint::mass::VelocityMass;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::phase::Drag;
-use materialpoint::reference::two_phase::{SaturatedColumn, Soil, TwoPhaseReference};
-use materialpoint::stepper::{FaceCondition, Forcing, Simulation};
+use materialpoint::reference::two_phase::{SaturatedColumn, Soil, TwoPhaseReference, TwoPhaseState};
+use materialpoint::stepper::{FaceCondition, Forcing, PoreCondition, Simulation};
 use materialpoint::taylor::{CellFit, DEFAULT_TOLERANCE};
 use nalgebra::vector;
 
@@ -106,6 +106,32 @@ fn what_b_splines_miss_of_the_weight_falls_with_the_square_of_the_particles_per_
     let [few, many] = [4, 8].map(|per_cell| self_weight(method, per_cell)[0]);
     println!("{few:.2e} {many:.2e}");
     assert!((3.5..4.5).contains(&(few / many)), "{few:.2e} {many:.2e}");
+}
+
+/// A fixed base that liquid passes, with the pressure of still water outside: a column in equilibrium stays so, although its base
+/// bears the grains' weight and the liquid's DOF there is free. Expected: velocities of round-off.
+#[test]
+fn still_water_outside_a_drained_wall_keeps_the_column_at_rest() {
+    let column = column(1e-4, PER_CELL);
+    let exact = SaturatedColumn::new(1.0, 1e7, 0.0, column.soil).unwrap();
+    let outside = PoreCondition::Pressure(exact.at(0.0).pore_pressure);
+    let forcing = drained()
+        .with_body_force(vector![-column.soil.gravity])
+        .with_pores(BASE, outside);
+    for reconstruction in [ReconstructionKind::Shepard, ReconstructionKind::Taylor] {
+        let method = Method::new(Basis::Linear, reconstruction);
+        let mut simulation = column.build_with_base(method, true, |x| TwoPhaseState {
+            solid_displacement: 0.0,
+            ..exact.at(x)
+        });
+        for _ in 0..200 {
+            simulation.step(2e-5, &forcing).unwrap();
+        }
+        for state in fields(simulation.as_ref()) {
+            let fastest = state.solid_velocity.abs().max(state.liquid_velocity.abs());
+            assert!(fastest < 1e-12, "{method}: {state:?}");
+        }
+    }
 }
 
 /// A sudden load on a column that cannot drain (k = 1e-9 m/s): the liquid takes K/n / (E + K/n) of every stress, also while
