@@ -6,6 +6,7 @@
 //! Expected: limited by the drag, stable at 0.95 of the prediction and unstable at 1.05; limited by the wave, stable at 0.95 and
 //! unstable at 1.08 (the prediction joins the largest eigenvalue of the grid's part with the two-phase material).
 
+use materialpoint::law::LinearElastic;
 use materialpoint::mass::VelocityMass;
 use materialpoint::method::Method;
 use materialpoint::phase::Drag;
@@ -16,10 +17,9 @@ use super::column::{AT_REST, Column, drained, table_6};
 
 const STEPS: usize = 3000;
 
-/// Whether noise stays bounded with a step of `share` of the predicted one.
-fn is_stable(method: Method, permeability: f64, drag: Drag, mass: VelocityMass, share: f64) -> bool {
+fn column(permeability: f64, drag: Drag, mass: VelocityMass) -> Column<LinearElastic<f64>> {
     let (soil, law) = table_6(permeability);
-    let column = Column {
+    Column {
         cells: 20,
         per_cell: 4,
         soil,
@@ -27,7 +27,12 @@ fn is_stable(method: Method, permeability: f64, drag: Drag, mass: VelocityMass, 
         drag,
         mass,
         surface: true,
-    };
+    }
+}
+
+/// Whether noise stays bounded with a step of `share` of the predicted one.
+fn is_stable(method: Method, permeability: f64, drag: Drag, mass: VelocityMass, share: f64) -> bool {
+    let column = column(permeability, drag, mass);
     // Velocities of both signs and no pattern, so small that nothing moves.
     let noise = |x: f64| ((x * 1e4).sin() * 1e4).fract() * 1e-9;
     let mut simulation = column.build(method, |x| TwoPhaseState {
@@ -49,16 +54,7 @@ fn is_stable(method: Method, permeability: f64, drag: Drag, mass: VelocityMass, 
 }
 
 fn predicted(method: Method, permeability: f64, drag: Drag, mass: VelocityMass) -> CriticalStep<f64> {
-    let (soil, law) = table_6(permeability);
-    let column = Column {
-        cells: 20,
-        per_cell: 4,
-        soil,
-        law,
-        drag,
-        mass,
-        surface: true,
-    };
+    let column = column(permeability, drag, mass);
     let simulation = column.build(method, |_| AT_REST);
     simulation.critical_step(&drained()).unwrap()
 }
