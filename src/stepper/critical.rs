@@ -34,6 +34,9 @@ pub struct CriticalStep<T> {
 /// Strain by which the law's tangent is probed.
 const PROBE_STRAIN: f64 = 1e-3;
 const LEAST_ITERATIONS: usize = 20;
+/// Share of `(c / h)^2`, `c` the wave speed, below which an eigenvalue is round-off: particles of which no two share a DOF
+/// that strains them.
+const ROUND_OFF: f64 = 1e-10;
 const MOST_ITERATIONS: usize = 400;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
@@ -58,17 +61,29 @@ where
         let mut probe = self.clone();
         if P::FLOWS {
             probe.particles.mass.clone_from(&self.particles.volume);
-            let geometry = probe.largest_eigenvalue(forcing)?;
+            let geometry = probe.largest_eigenvalue(forcing, T::one())?;
             let steps = (0..self.particles.len()).map(|p| self.coupled(p).critical_step(geometry));
             return steps
                 .flatten()
                 .min_by(|a, b| a.step.primal().total_cmp(&b.step.primal()));
         }
-        let eigenvalue = probe.largest_eigenvalue(forcing)?;
+        let eigenvalue = probe.largest_eigenvalue(forcing, self.largest_wave_speed())?;
         Some(CriticalStep {
             step: T::lit(2.0) / eigenvalue.sqrt(),
             mechanism: Mechanism::Wave,
         })
+    }
+
+    /// Largest speed (m/s) of a wave through the solid.
+    fn largest_wave_speed(&self) -> T {
+        let particles = &self.particles;
+        (0..particles.len())
+            .map(|p| {
+                let density = particles.mass[p] / particles.volume[p];
+                self.law
+                    .wave_speed(density, &particles.stress[p], &particles.state[p])
+            })
+            .fold(T::zero(), T::max)
     }
 
     /// The material at particle `p`.
@@ -89,8 +104,10 @@ where
         }
     }
 
-    /// Largest eigenvalue of the map; the stepper is used up.
-    fn largest_eigenvalue(mut self, forcing: &Forcing<T, D>) -> Option<T> {
+    /// Largest eigenvalue of the map, `None` if it is nothing to a wave of the given `speed`; the stepper is used up.
+    fn largest_eigenvalue(mut self, forcing: &Forcing<T, D>, speed: T) -> Option<T> {
+        let across = speed / self.grid.cell_size().min();
+        let least = across * across * T::lit(ROUND_OFF);
         let probe = &mut self;
         probe.prepare();
         probe.lump_mass();
@@ -108,7 +125,7 @@ where
             }
             before = eigenvalue;
         }
-        (before > T::zero()).then_some(before)
+        (before > least).then_some(before)
     }
 
     /// Velocity that strains a cell by [`PROBE_STRAIN`] in one second.

@@ -19,9 +19,9 @@ mod taylor_functions;
 
 use proptest::test_runner::{Config, RngSeed};
 
-/// 256 layouts for each property, always the same ones, and no files left behind. `PROPTEST_CASES` and
+/// 256 layouts or scenes for each property, always the same ones, and no files left behind. `PROPTEST_CASES` and
 /// `PROPTEST_RNG_SEED` ask for more and for others.
-fn config() -> Config {
+pub fn config() -> Config {
     let asked = Config::default();
     Config {
         failure_persistence: None,

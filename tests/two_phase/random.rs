@@ -1,7 +1,8 @@
 //! Random saturated scenes: porosity 0.01 to 0.99, permeability 1e-12 to 1 m/s, stiffness over six decades, random layouts.
 //!
-//! Expected: Shepard and TLS keep mass and momentum of both phases to round-off; nothing panics; half the predicted step
-//! leaves every number finite; three times the step either still runs or ends with a typed error.
+//! Expected: Shepard and TLS keep mass and momentum of both phases to round-off, also where a run blows up; nothing panics.
+//! At half the predicted step Shepard always runs on; published TLS and the spline may end in a typed error, because on some
+//! layouts they grow whatever the step (`docs/two-phase.md`, long runs). Three times the step runs on or ends in one.
 
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::Grid;
@@ -11,7 +12,7 @@ use materialpoint::method::{Method, MethodVisitor, ReconstructionKind};
 use materialpoint::particles::Particles;
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
 use materialpoint::reconstruction::Reconstruction;
-use materialpoint::stepper::{Setup, Simulation, Stepper, SurfacePoint};
+use materialpoint::stepper::{CriticalStep, Setup, Simulation, Stepper, SurfacePoint};
 use nalgebra::{SVector, vector};
 use proptest::prelude::*;
 
@@ -128,21 +129,22 @@ fn scenes() -> impl Strategy<Value = Scene> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(192))]
+    #![proptest_config(crate::identities::config())]
 
     #[test]
     fn both_phases_keep_mass_and_momentum(scene in scenes()) {
         let method = Method::NINE[scene.method];
         let mut simulation = method.dispatch(&scene).unwrap();
         let forcing = loaded(scene.load);
-        let step = simulation.critical_step(&forcing).unwrap().step;
+        let Some(CriticalStep { step, .. }) = simulation.critical_step(&forcing) else {
+            return Ok(()); // So few particles that nothing resists their motion.
+        };
         prop_assert!(step > 0.0 && step.is_finite());
-        for _ in 0..20 {
-            simulation.step(0.5 * step, &forcing).unwrap();
-        }
-        prop_assert!(simulation.energy().total().is_finite());
-        if method.reconstruction == ReconstructionKind::Spline {
-            return Ok(());
+        let ended = (0..20).try_for_each(|_| simulation.step(0.5 * step, &forcing));
+        match method.reconstruction {
+            ReconstructionKind::Shepard => prop_assert!(ended.is_ok() && simulation.energy().total().is_finite(), "{ended:?}"),
+            ReconstructionKind::Spline => return Ok(()),
+            _ => {}
         }
         let found = simulation.diagnostics();
         for errors in [found.conservation, found.liquid_conservation.unwrap()] {
@@ -155,7 +157,9 @@ proptest! {
     fn too_large_a_step_ends_in_a_typed_error_or_not_at_all(scene in scenes()) {
         let mut simulation = Method::NINE[scene.method].dispatch(&scene).unwrap();
         let forcing = loaded(scene.load);
-        let step = simulation.critical_step(&forcing).unwrap().step;
+        let Some(CriticalStep { step, .. }) = simulation.critical_step(&forcing) else {
+            return Ok(());
+        };
         for _ in 0..2000 {
             if let Err(error) = simulation.step(3.0 * step, &forcing) {
                 prop_assert!(!error.to_string().is_empty());
