@@ -66,6 +66,7 @@ pub mod grid;
 pub mod law;
 pub mod mass;
 pub mod method;
+mod parallel;
 pub mod particles;
 pub mod phase;
 pub mod quadrature;

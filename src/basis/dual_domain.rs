@@ -1,5 +1,7 @@
 //! Dual domain: linear values, smoothed gradients.
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use super::tensor::{self, AxisFamily, Row};
@@ -127,6 +129,10 @@ impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
 
     fn dofs(&self, grid: &Grid<T, D>) -> [usize; D] {
         tensor::dofs::<T, D, 4, _>(self, grid)
+    }
+
+    fn dof_window(&self, grid: &Grid<T, D>, first: &Cell<D>, last: &Cell<D>) -> Range<usize> {
+        tensor::dof_window(self, grid, first, last)
     }
 
     #[inline(always)]

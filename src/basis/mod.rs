@@ -15,6 +15,8 @@ pub use interpolant::Interpolant;
 pub use linear::Linear;
 pub use tensor::{AxisFamily, Row};
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use crate::grid::{Cell, Face, Grid, Side};
@@ -29,7 +31,7 @@ use crate::scalar::Scalar;
     message = "`{Self}` is no basis family for scalar `{T}` in `{D}` dimensions",
     note = "families: Linear, DualDomain, BSpline<1>, BSpline<2>, BSpline<3>, or your own `impl BasisFamily`"
 )]
-pub trait BasisFamily<T: Scalar, const D: usize>: Clone {
+pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     /// Whether [`BasisFamily::take_in`] does anything.
     const TAKES_IN_CELLS: bool = false;
 
@@ -64,6 +66,12 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone {
         f: impl FnMut(usize, T, SVector<T, D>),
     ) {
         self.for_each(grid, cell, x, f);
+    }
+
+    /// DOFs among which are all that points in the cells with numbers from that of `first` to that of `last` see. The fewer,
+    /// the better can threads share the particles; every DOF unless told otherwise.
+    fn dof_window(&self, grid: &Grid<T, D>, _first: &Cell<D>, _last: &Cell<D>) -> Range<usize> {
+        0..self.dof_count(grid)
     }
 
     /// Where (m) the value that belongs to a DOF is taken when a field is interpolated ([`Interpolant`]): the node, or the

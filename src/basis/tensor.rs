@@ -1,7 +1,10 @@
 //! Tensor products of one-axis families.
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
+use super::BasisFamily;
 use crate::grid::{Cell, Grid};
 use crate::scalar::Scalar;
 
@@ -55,6 +58,24 @@ pub fn dofs<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
     grid: &Grid<T, D>,
 ) -> [usize; D] {
     grid.cells().map(|cells| family.dofs_on_axis(cells))
+}
+
+/// DOFs that points in the cells with numbers from that of `first` to that of `last` see: the numbers of the DOFs of a cell
+/// grow with its own.
+pub fn dof_window<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    family: &B,
+    grid: &Grid<T, D>,
+    first: &Cell<D>,
+    last: &Cell<D>,
+) -> Range<usize> {
+    let (mut low, mut high) = (usize::MAX, 0);
+    for cell in [first, last] {
+        family.for_each(grid, cell, &grid.centre(cell), |dof, _, _| {
+            low = low.min(dof);
+            high = high.max(dof + 1);
+        });
+    }
+    low..high
 }
 
 /// Visits the product functions at `x`: values multiply, a gradient takes the slope along its own axis.
@@ -172,6 +193,15 @@ macro_rules! tensor_product_family {
                 f: impl FnMut(usize, T, ::nalgebra::SVector<T, D>),
             ) {
                 $crate::basis::tensor::for_each::<T, D, $width, _>(self, grid, cell, x, f);
+            }
+
+            fn dof_window(
+                &self,
+                grid: &$crate::grid::Grid<T, D>,
+                first: &$crate::grid::Cell<D>,
+                last: &$crate::grid::Cell<D>,
+            ) -> ::std::ops::Range<usize> {
+                $crate::basis::tensor::dof_window(self, grid, first, last)
             }
 
             $(

@@ -23,6 +23,8 @@ pub struct Grid<T, const D: usize> {
     cells: [usize; D],
     cell_size: SVector<T, D>,
     inverse_cell_size: SVector<T, D>,
+    /// Rounding of a coordinate within a cell and of the cell's edges, in cell sizes.
+    doubt: SVector<T, D>,
 }
 
 impl<T: Scalar, const D: usize> Grid<T, D> {
@@ -52,12 +54,17 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
             return Err(GridError::TooManyCells);
         }
         let cell_size = SVector::from_fn(|a, _| (max[a] - min[a]) / T::count(cells[a]));
+        let doubt = SVector::from_fn(|a, _| {
+            let reach = (min[a].abs() + max[a].abs()) / cell_size[a];
+            T::default_epsilon() * T::lit(16.0) * (reach + T::count(cells[a]))
+        });
         Ok(Self {
             min,
             max,
             cells,
             cell_size,
             inverse_cell_size: cell_size.map(|h| T::one() / h),
+            doubt,
         })
     }
 
@@ -132,9 +139,7 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
     pub fn clearly_holds(&self, cell: &Cell<D>, x: &SVector<T, D>) -> bool {
         (0..D).all(|axis| {
             let unit = self.unit_coordinate(axis, cell[axis], x[axis]);
-            // Rounding of the coordinate and of the edges, in cell sizes.
-            let reach = (self.min[axis].abs() + self.max[axis].abs()) * self.inverse_cell_size[axis];
-            let doubt = T::default_epsilon() * T::lit(16.0) * (reach + T::count(self.cells[axis]));
+            let doubt = self.doubt[axis];
             unit > doubt && unit < T::one() - doubt
         })
     }

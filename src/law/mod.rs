@@ -23,10 +23,10 @@ use crate::scalar::Scalar;
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no constitutive law for scalar `{T}` in `{D}` dimensions"
 )]
-pub trait ConstitutiveLaw<T: Scalar, const D: usize> {
+pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Sync {
     /// What the law remembers of each particle besides its stress; `()` for an elastic rate law.
     /// `Default` is the undeformed state.
-    type State: Copy + Default;
+    type State: Copy + Default + Send + Sync;
 
     /// Whether volume and density follow the deformation (large strain) or stay as they were (small strain).
     fn large_strain(&self) -> bool;

@@ -36,6 +36,16 @@ impl<T: Scalar> Banded<T> {
         self.rows.is_empty()
     }
 
+    /// Half band width.
+    pub fn half_band(&self) -> usize {
+        self.half_band
+    }
+
+    /// The lower half's rows end to end, see [`banded_row`].
+    pub(crate) fn rows_mut(&mut self) -> &mut [T] {
+        &mut self.rows
+    }
+
     /// Sets every entry to zero.
     pub fn clear(&mut self) {
         self.rows.fill(T::zero());
@@ -163,6 +173,12 @@ impl<T: Scalar> Banded<T> {
         }
         y
     }
+}
+
+/// Row `i` of a lower half stored by rows; the entry `(i, j)` is at `half_band + j - i`.
+#[inline(always)]
+pub(crate) fn banded_row<T>(rows: &mut [T], i: usize, half_band: usize) -> &mut [T] {
+    &mut rows[i * (half_band + 1)..(i + 1) * (half_band + 1)]
 }
 
 #[cfg(test)]

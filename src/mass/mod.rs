@@ -3,6 +3,7 @@
 mod banded;
 
 pub use banded::Banded;
+pub(crate) use banded::banded_row;
 
 /// Which mass turns the DOFs' momentum into their velocity. The acceleration always divides by the lumped
 /// mass of the particles (journal section 5.4).

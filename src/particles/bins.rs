@@ -47,16 +47,28 @@ impl<const D: usize> Bins<D> {
         positions: &[SVector<T, D>],
     ) -> Result<usize, Outside> {
         let mut crossings = 0;
-        for (p, (old, x)) in self.cell_of.iter_mut().zip(positions).enumerate() {
-            if grid.clearly_holds(old, x) {
-                continue;
-            }
-            let cell = grid.locate(x).ok_or(Outside(p))?;
-            crossings += usize::from(cell != *old);
-            *old = cell;
+        for (p, (cell, x)) in self.cell_of.iter_mut().zip(positions).enumerate() {
+            crossings += usize::from(relocate(grid, cell, x).ok_or(Outside(p))?);
         }
-        self.lists_are_stale |= crossings > 0;
+        self.note_crossings(crossings);
         Ok(crossings)
+    }
+
+    /// Cell of each particle.
+    #[inline(always)]
+    pub fn cells(&self) -> &[Cell<D>] {
+        &self.cell_of
+    }
+
+    /// The same, to be changed; [`Bins::note_crossings`] must then be told how many were.
+    #[inline(always)]
+    pub(crate) fn cells_mut(&mut self) -> &mut [Cell<D>] {
+        &mut self.cell_of
+    }
+
+    /// Makes the lists stale if particles changed their cells.
+    pub(crate) fn note_crossings(&mut self, crossings: usize) {
+        self.lists_are_stale |= crossings > 0;
     }
 
     /// Brings the lists per cell up to date (a counting sort, only after a particle changed its cell).
@@ -117,6 +129,22 @@ impl<const D: usize> Bins<D> {
     pub fn bytes_per_particle() -> usize {
         size_of::<Cell<D>>() + size_of::<u32>()
     }
+}
+
+/// Looks the cell at `x` up again and returns whether it is another one; `None` if `x` is not in the grid.
+#[inline(always)]
+pub(crate) fn relocate<T: Scalar, const D: usize>(
+    grid: &Grid<T, D>,
+    cell: &mut Cell<D>,
+    x: &SVector<T, D>,
+) -> Option<bool> {
+    if grid.clearly_holds(cell, x) {
+        return Some(false);
+    }
+    let found = grid.locate(x)?;
+    let crossed = found != *cell;
+    *cell = found;
+    Some(crossed)
 }
 
 #[cfg(test)]

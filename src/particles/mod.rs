@@ -3,9 +3,12 @@
 mod bins;
 mod cast;
 mod lattice;
+mod movable;
 
+pub(crate) use bins::relocate;
 pub use bins::{Bins, Outside};
 pub use lattice::lattice;
+pub(crate) use movable::{Movable, Movables};
 
 use nalgebra::{SMatrix, SVector};
 
@@ -70,6 +73,18 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
     #[inline(always)]
     pub fn density(&self, p: usize) -> T {
         self.mass[p] / self.volume[p]
+    }
+
+    /// What moves and deforms of each particle.
+    pub(crate) fn movable(&mut self) -> Movables<'_, T, D, S, P> {
+        Movables {
+            position: &mut self.position,
+            displacement: &mut self.displacement,
+            stress: &mut self.stress,
+            volume: &mut self.volume,
+            state: &mut self.state,
+            phase: &mut self.phase,
+        }
     }
 
     /// Bytes that one particle takes in these arrays.

@@ -19,7 +19,7 @@ use crate::scalar::Scalar;
 ///
 /// The hooks below [`Phase::update`] are asked only of a phase that [`Phase::FLOWS`]; masses and forces of the liquid are
 /// those of [`mod@crate::stepper`]'s second balance of momentum.
-pub trait Phase<T: Scalar, const D: usize> {
+pub trait Phase<T: Scalar, const D: usize>: Sync {
     /// Whether there is anything but the solid.
     const COUPLED: bool;
 
@@ -27,7 +27,7 @@ pub trait Phase<T: Scalar, const D: usize> {
     const FLOWS: bool = false;
 
     /// Data per particle; `()` takes no memory.
-    type Particle: Copy + Default;
+    type Particle: Copy + Default + Send + Sync;
 
     /// Stress (Pa) that the momentum balance of the whole feels, given the solid's effective stress.
     fn total_stress(&self, effective: &SMatrix<T, D, D>, particle: &Self::Particle) -> SMatrix<T, D, D>;

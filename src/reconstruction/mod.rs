@@ -16,6 +16,8 @@ pub use shepard::Shepard;
 pub use spline::CubicSpline;
 pub use taylor::Taylor;
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use crate::error::SetupError;
@@ -101,7 +103,7 @@ pub struct Point<T, const D: usize> {
     message = "`{Self}` does not reconstruct scalar `{T}` in `{D}` dimensions",
     note = "CubicSpline is global and exists in 1-D only; Taylor<T, D, NB> takes NB = 3, 6, 10 for D = 1, 2, 3"
 )]
-pub trait Reconstruction<T: Scalar, const D: usize> {
+pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
     /// Whether [`Reconstruction::integrate`] streams the particles. They move, so there the basis gives
     /// gradients made for that ([`crate::basis::BasisFamily::for_each`]).
     const FIELDS_AT_PARTICLES: bool;
@@ -110,9 +112,16 @@ pub trait Reconstruction<T: Scalar, const D: usize> {
     /// sum over the particles, lumped unless [`Reconstruction::PARTICLE_MATRIX`].
     const AMOUNTS_AT_PARTICLES: bool;
 
+    /// Whether everything is streamed once at each particle, with the volume or amount that it has: the step then sums over the
+    /// particles in passes of its own.
+    const PLAIN: bool = false;
+
     /// Whether both the acceleration and the velocity of the DOFs come from the consistent mass matrix of the particles,
     /// `sum_p m_p phi_i phi_j`. Only with [`Reconstruction::AMOUNTS_AT_PARTICLES`].
     const PARTICLE_MATRIX: bool = false;
+
+    /// Whether each cell can be streamed alone, so that threads may share them ([`Reconstruction::integrate_cells`]).
+    const BY_CELLS: bool = false;
 
     /// Whether [`Reconstruction::relax`] does anything.
     const RELAXES: bool = false;
@@ -137,6 +146,27 @@ pub trait Reconstruction<T: Scalar, const D: usize> {
         amount: impl Fn(usize) -> Q,
         sink: impl FnMut(&Point<T, D>, Q),
     );
+
+    /// What [`Reconstruction::integrate`] streams in the given `cells`, places in the list of occupied ones. Only asked where
+    /// [`Reconstruction::BY_CELLS`].
+    fn integrate_cells<Q: Field<T>>(
+        &self,
+        _cloud: &Cloud<'_, T, D>,
+        _cells: Range<usize>,
+        _value: impl Fn(usize) -> Q,
+        _sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+    }
+
+    /// What [`Reconstruction::integrate_conserved`] streams in the given `cells`, likewise.
+    fn integrate_conserved_cells<Q: Field<T>>(
+        &self,
+        _cloud: &Cloud<'_, T, D>,
+        _cells: Range<usize>,
+        _amount: impl Fn(usize) -> Q,
+        _sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+    }
 
     /// Moves the particles' `values` towards what the reconstruction sees of them; `weights` (masses) make the fit keep
     /// the weighted sum. The stepper calls it for the stress, unweighted, right after the force is assembled, and for

@@ -1,5 +1,7 @@
 //! Relaxed Taylor least squares.
 
+use std::ops::Range;
+
 use super::taylor::local;
 use super::{Cloud, Patch, Point, Reconstruction, Shepard, Taylor};
 use crate::field::Field;
@@ -78,6 +80,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     const FIELDS_AT_PARTICLES: bool = false;
     const AMOUNTS_AT_PARTICLES: bool = true;
     const PARTICLE_MATRIX: bool = true;
+    const BY_CELLS: bool = true;
     const RELAXES: bool = true;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
@@ -102,6 +105,17 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         sink: impl FnMut(&Point<T, D>, Q),
     ) {
         Shepard.integrate_conserved(cloud, amount, sink);
+    }
+
+    #[inline(always)]
+    fn integrate_cells<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        value: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        self.taylor.integrate_cells(cloud, cells, value, sink);
     }
 
     fn relax<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, weights: Option<&[T]>, values: &mut [Q]) {

@@ -12,6 +12,7 @@ pub struct Shepard;
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
     const FIELDS_AT_PARTICLES: bool = true;
     const AMOUNTS_AT_PARTICLES: bool = true;
+    const PLAIN: bool = true;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, T, D>) {}
 

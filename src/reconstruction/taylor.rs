@@ -1,13 +1,16 @@
 //! Taylor least squares.
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use super::{Cloud, Patch, Point, Reconstruction};
 use crate::field::Field;
 use crate::grid::Cell;
+use crate::parallel::{self, each_span};
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
-use crate::taylor::{CellFit, DEFAULT_TOLERANCE, taylor_functions};
+use crate::taylor::{CellFit, DEFAULT_TOLERANCE, Gram, taylor_functions};
 
 /// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor functions through
 /// the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3 dimensions.
@@ -41,6 +44,41 @@ pub(super) struct CellFits<T, const D: usize, const NB: usize> {
     pub(super) patch: Patch<T, D>,
     pub(super) free: CellFit<T, NB>,
     conserved: CellFit<T, NB>,
+    /// Sums of the Taylor functions over the particles.
+    sums: SVector<T, NB>,
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> CellFits<T, D, NB> {
+    /// Of no particles.
+    fn empty(cloud: &Cloud<'_, T, D>) -> Self {
+        let nothing = std::iter::empty::<(SVector<T, D>, T)>();
+        let fit = CellFit::weighted(nothing, 0, T::one());
+        Self {
+            patch: cloud.patch(0),
+            free: fit,
+            conserved: fit,
+            sums: SVector::zeros(),
+        }
+    }
+
+    /// Of the particles in the cell with number `cell`.
+    #[inline(always)]
+    fn new(cloud: &Cloud<'_, T, D>, cell: usize, tolerance: T) -> Self {
+        let patch = cloud.patch(cell);
+        let points = local(cloud, cell, &patch).map(|(_, s)| (s, T::one()));
+        let gram = Gram::new(points.clone());
+        Self {
+            patch,
+            free: CellFit::with_gram(&gram, points.clone(), 0, tolerance),
+            conserved: CellFit::with_gram(&gram, points, 1, tolerance),
+            sums: SVector::from_fn(|k, _| gram.sum(k)),
+        }
+    }
+
+    /// Whether both fits have all functions.
+    fn is_full(&self) -> bool {
+        self.free.functions() == NB && self.conserved.functions() + 1 == NB
+    }
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> Default for Taylor<T, D, NB> {
@@ -225,13 +263,31 @@ fn conserved<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
     cell: usize,
     amount: &impl Fn(usize) -> Q,
 ) -> [Q; NB] {
-    let mut mean = Q::zero();
-    for &p in cloud.bins.particles_in(cell) {
-        mean.add_scaled(T::one(), amount(p as usize));
+    let inverse_volume = T::one() / fits.patch.volume();
+    if !fits.conserved.is_well_spread() {
+        let particles = cloud.bins.particles_in(cell).iter();
+        let total = particles.fold(Q::zero(), |sum, &p| sum + amount(p as usize));
+        let density = |p: usize| amount(p).scaled(T::one() / cloud.volumes[p]);
+        return fit_about_mean(fits, cloud, cell, &density, total.scaled(inverse_volume));
     }
-    let mean = mean.scaled(T::one() / fits.patch.volume());
-    let density = |p: usize| amount(p).scaled(T::one() / cloud.volumes[p]);
-    fit_about_mean(fits, cloud, cell, &density, mean)
+    // Total and sums in one pass; the mean is taken out of the sums afterwards.
+    let (mut total, mut sums) = (Q::zero(), [Q::zero(); NB]);
+    for (p, s) in local(cloud, cell, &fits.patch) {
+        let psi = taylor_functions::<T, D, NB>(&s);
+        let amount = amount(p);
+        let density = amount.scaled(T::one() / cloud.volumes[p]);
+        total.add_scaled(T::one(), amount);
+        for k in 1..NB {
+            sums[k].add_scaled(psi[k], density);
+        }
+    }
+    let mean = total.scaled(inverse_volume);
+    for k in 1..NB {
+        sums[k].add_scaled(-fits.sums[k], mean);
+    }
+    let mut coefficients = fits.conserved.from_sums(sums);
+    coefficients[0] = mean;
+    coefficients
 }
 
 #[inline(always)]
@@ -251,25 +307,28 @@ fn fit_about_mean<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor<T, D, NB> {
     const FIELDS_AT_PARTICLES: bool = false;
     const AMOUNTS_AT_PARTICLES: bool = false;
+    const BY_CELLS: bool = true;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
         // One slot for each cell there is, so that a later step never has to allocate.
-        self.cells.clear();
-        self.cells.reserve(cloud.grid.cell_count());
-        self.reduced = 0;
-        for &cell in cloud.bins.occupied() {
-            let patch = cloud.patch(cell as usize);
-            let points = local(cloud, cell as usize, &patch).map(|(_, s)| s);
-            let free = CellFit::new(points.clone(), 0, self.tolerance);
-            let conserved = CellFit::new(points, 1, self.tolerance);
-            let full = free.functions() == NB && conserved.functions() + 1 == NB;
-            self.reduced += usize::from(!full);
-            self.cells.push(CellFits {
-                patch,
-                free,
-                conserved,
-            });
-        }
+        self.cells
+            .reserve(cloud.grid.cell_count() - self.cells.len().min(cloud.grid.cell_count()));
+        let occupied = cloud.bins.occupied();
+        let empty = CellFits::empty(cloud);
+        self.cells.resize(occupied.len(), empty);
+        let tolerance = self.tolerance;
+        let parallel = occupied.len() > parallel::CELLS && parallel::many_threads();
+        each_span(
+            parallel,
+            parallel::CELLS,
+            (occupied, &mut self.cells[..]),
+            &|_, (cells, fits)| {
+                for (&cell, fits) in cells.iter().zip(fits) {
+                    *fits = CellFits::new(cloud, cell as usize, tolerance);
+                }
+            },
+        );
+        self.reduced = self.cells.iter().filter(|fits| !fits.is_full()).count();
     }
 
     #[inline(always)]
@@ -277,12 +336,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         &mut self,
         cloud: &Cloud<'_, T, D>,
         value: impl Fn(usize) -> Q,
-        mut sink: impl FnMut(&Point<T, D>, Q),
+        sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        for (cell, fits) in self.each_cell(cloud) {
-            let coefficients = free(fits, cloud, cell, &value);
-            self.emit(&fits.patch, &coefficients, &mut sink);
-        }
+        self.integrate_cells(cloud, 0..self.cells.len(), value, sink);
     }
 
     #[inline(always)]
@@ -290,10 +346,37 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         &mut self,
         cloud: &Cloud<'_, T, D>,
         amount: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        self.integrate_conserved_cells(cloud, 0..self.cells.len(), amount, sink);
+    }
+
+    #[inline(always)]
+    fn integrate_cells<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        value: impl Fn(usize) -> Q,
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        for (cell, fits) in self.each_cell(cloud) {
-            let coefficients = conserved(fits, cloud, cell, &amount);
+        let numbers = cloud.bins.occupied()[cells.clone()].iter();
+        for (&cell, fits) in numbers.zip(&self.cells[cells]) {
+            let coefficients = free(fits, cloud, cell as usize, &value);
+            self.emit(&fits.patch, &coefficients, &mut sink);
+        }
+    }
+
+    #[inline(always)]
+    fn integrate_conserved_cells<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        amount: impl Fn(usize) -> Q,
+        mut sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        let numbers = cloud.bins.occupied()[cells.clone()].iter();
+        for (&cell, fits) in numbers.zip(&self.cells[cells]) {
+            let coefficients = conserved(fits, cloud, cell as usize, &amount);
             self.emit(&fits.patch, &coefficients, &mut sink);
         }
     }

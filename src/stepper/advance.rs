@@ -3,10 +3,12 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Stepper;
+use super::spans::{Fault, Moved};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::law::ConstitutiveLaw;
-use crate::particles::Particles;
+use crate::parallel::{PARTICLES, PerSpan, each_span, many_threads};
+use crate::particles::{Movable, relocate};
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -20,47 +22,83 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
+    /// Moves and deforms every particle and looks its new cell up.
+    #[inline(never)]
     pub(super) fn advance(&mut self, dt: T) -> Result<(), StepError> {
-        let velocity = &self.dofs.velocity;
-        let particles = &mut self.particles;
-        for p in 0..particles.position.len() {
-            let mut v = SVector::zeros();
-            let mut gradient = SMatrix::<T, D, D>::zeros();
-            let (cell, x) = (self.bins.cell_of(p), &particles.position[p]);
-            self.basis.for_each(&self.grid, cell, x, |i, phi, grad_phi| {
-                v += velocity[i] * phi;
-                gradient += velocity[i] * grad_phi.transpose();
-            });
-            let increment = gradient * dt;
-            if P::COUPLED {
-                self.phase.update(&increment, &mut particles.phase[p]);
-            }
-            advance_solid(&self.law, particles, p, &(v * dt), &increment)
-                .map_err(|volume| StepError::volume(self.steps, p, volume))?;
+        let (basis, grid, law, phase) = (&self.basis, &self.grid, &self.law, &self.phase);
+        let velocity = &self.dofs.velocity[..];
+        let parallel = self.particles.len() > PARTICLES && many_threads();
+        let work = (
+            self.particles.movable(),
+            self.bins.cells_mut(),
+            PerSpan(&mut self.spans.moved),
+        );
+        each_span(parallel, PARTICLES, work, &|first, (particles, cells, found)| {
+            let mut crossings = 0;
+            let moved = particles
+                .each()
+                .zip(cells)
+                .enumerate()
+                .try_for_each(|(k, (mut particle, cell))| {
+                    let mut v = SVector::zeros();
+                    let mut gradient = SMatrix::<T, D, D>::zeros();
+                    basis.for_each(grid, cell, particle.position, |i, phi, grad_phi| {
+                        v += velocity[i] * phi;
+                        gradient += velocity[i] * grad_phi.transpose();
+                    });
+                    let increment = gradient * dt;
+                    if P::COUPLED {
+                        phase.update(&increment, particle.phase);
+                    }
+                    particle
+                        .advance(law, &(v * dt), &increment)
+                        .map_err(|volume| Fault::Volume(first + k, volume))?;
+                    let crossed = relocate(grid, cell, particle.position).ok_or(Fault::Left(first + k))?;
+                    crossings += usize::from(crossed);
+                    Ok(())
+                });
+            let fault = moved.err();
+            found.set(Moved { crossings, fault });
+        });
+        self.account_for_moves()
+    }
+
+    /// Counts crossings; the error is that of the first particle at fault.
+    pub(super) fn account_for_moves(&mut self) -> Result<(), StepError> {
+        let moved = &self.spans.moved;
+        let crossings = moved.iter().map(|span| span.crossings).sum();
+        let fault = moved.iter().find_map(|span| span.fault);
+        self.diagnostics.grid_crossings += crossings;
+        self.bins.note_crossings(crossings);
+        self.spans.stale |= crossings > 0;
+        match fault {
+            None => Ok(()),
+            Some(Fault::Volume(p, volume)) => Err(StepError::volume(self.steps, p, volume)),
+            Some(Fault::Left(p)) => Err(self.left(p)),
         }
-        Ok(())
     }
 }
 
-/// Moves particle `p` by `path` and deforms it by `increment`; the volume is the error if it is no longer a positive number.
-#[inline(always)]
-pub(super) fn advance_solid<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>, Q>(
-    law: &L,
-    particles: &mut Particles<T, D, L::State, Q>,
-    p: usize,
-    path: &SVector<T, D>,
-    increment: &SMatrix<T, D, D>,
-) -> Result<(), T> {
-    particles.position[p] += path;
-    particles.displacement[p] += path;
-    law.update(increment, &mut particles.stress[p], &mut particles.state[p]);
-    if law.large_strain() {
-        let volume = particles.volume[p] * determinant(&(SMatrix::identity() + increment));
-        // Also refuses a volume that is not a number.
-        if !(volume > T::zero() && volume.is_finite()) {
-            return Err(volume);
+impl<T: Scalar, const D: usize, S: Copy, Q> Movable<'_, T, D, S, Q> {
+    /// Moves the particle by `path` and deforms it by `increment`; the volume is the error if it is no longer a positive number.
+    #[inline(always)]
+    pub(super) fn advance<L: ConstitutiveLaw<T, D, State = S>>(
+        &mut self,
+        law: &L,
+        path: &SVector<T, D>,
+        increment: &SMatrix<T, D, D>,
+    ) -> Result<(), T> {
+        *self.position += path;
+        *self.displacement += path;
+        law.update(increment, self.stress, self.state);
+        if law.large_strain() {
+            let volume = *self.volume * determinant(&(SMatrix::identity() + increment));
+            // Also refuses a volume that is not a number.
+            if !(volume > T::zero() && volume.is_finite()) {
+                return Err(volume);
+            }
+            *self.volume = volume;
         }
-        particles.volume[p] = volume;
+        Ok(())
     }
-    Ok(())
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::forces::internal_force;
+use super::forces::Assembly;
 use super::liquid::Coupled;
 use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
@@ -160,8 +160,14 @@ where
         self.divide_by_mass(rest);
         let rates: Vec<_> = (0..self.particles.len()).map(|p| self.stress_rate(p)).collect();
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
-        let (basis, force) = (&self.basis, &mut self.dofs.force);
-        internal_force(basis, &mut self.reconstruction, &cloud, |p| rates[p], force);
+        let assembly = Assembly {
+            basis: &self.basis,
+            reconstruction: &mut self.reconstruction,
+            cloud,
+            spans: &mut self.spans,
+            force: &mut self.dofs.force,
+        };
+        assembly.internal_force(|p| rates[p]);
         self.accelerate(rest);
         self.particles.velocity.fill(SVector::zeros());
         self.update_particle_velocities(-T::one());

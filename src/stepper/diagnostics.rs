@@ -6,7 +6,6 @@ use super::Stepper;
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
 use crate::law::ConstitutiveLaw;
-use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -74,36 +73,45 @@ impl<T: Scalar> Diagnostics<T> {
     }
 
     /// Compares the mapped totals with those of the particles.
-    pub(super) fn record<const D: usize, S, P>(
-        &mut self,
-        particles: &Particles<T, D, S, P>,
-        mapped: MassMomentum<T, D>,
-    ) {
-        let parts = particles
-            .mass
-            .iter()
-            .zip(&particles.velocity)
-            .map(|(&m, v)| v * m);
-        self.conservation
-            .record(self.total_mass, &Sums::of(parts), mapped);
+    pub(super) fn record<const D: usize>(&mut self, particles: &Sums<T, D>, mapped: MassMomentum<T, D>) {
+        self.conservation.record(self.total_mass, particles, mapped);
     }
 }
 
 /// Momentum of the particles, and the sum of its sizes.
-struct Sums<T, const D: usize> {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sums<T, const D: usize> {
     momentum: SVector<T, D>,
     scale: T,
 }
 
 impl<T: Scalar, const D: usize> Sums<T, D> {
+    pub(super) fn zero() -> Self {
+        Self {
+            momentum: SVector::zeros(),
+            scale: T::zero(),
+        }
+    }
+
+    /// Adds the momentum of one particle.
+    #[inline(always)]
+    pub(super) fn add(&mut self, part: SVector<T, D>) {
+        self.momentum += part;
+        self.scale += if D == 1 { part[0].abs() } else { part.norm() };
+    }
+
+    /// Both together.
+    pub(super) fn with(mut self, other: &Self) -> Self {
+        self.momentum += other.momentum;
+        self.scale += other.scale;
+        self
+    }
+
     #[inline(always)]
     fn of(momenta: impl Iterator<Item = SVector<T, D>>) -> Self {
-        let (mut momentum, mut scale) = (SVector::zeros(), T::zero());
-        for part in momenta {
-            momentum += part;
-            scale += if D == 1 { part[0].abs() } else { part.norm() };
-        }
-        Self { momentum, scale }
+        let mut sums = Self::zero();
+        momenta.for_each(|part| sums.add(part));
+        sums
     }
 }
 
@@ -135,7 +143,12 @@ where
     /// Compares the mapped totals of both phases with those of the particles.
     pub(super) fn record_both(&mut self, [solid, liquid]: [MassMomentum<T, D>; 2]) {
         let (particles, phase) = (&self.particles, &self.phase);
-        self.diagnostics.record(particles, solid);
+        let momenta = particles
+            .mass
+            .iter()
+            .zip(&particles.velocity)
+            .map(|(&m, v)| v * m);
+        self.diagnostics.record(&Sums::of(momenta), solid);
         let Some(errors) = &mut self.diagnostics.liquid_conservation else {
             return;
         };

@@ -2,11 +2,13 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::spans::{Spans, share};
 use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::law::ConstitutiveLaw;
+use crate::parallel::{CELLS, PARTICLES, Windows, add_up, each_span};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, Reconstruction};
+use crate::reconstruction::{Cloud, Point, Reconstruction};
 use crate::scalar::Scalar;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
@@ -17,19 +19,83 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
-    pub(super) fn assemble_forces(&mut self, forcing: &Forcing<T, D>) {
+    /// Masses and forces of the DOFs.
+    pub(super) fn assemble(&mut self, forcing: &Forcing<T, D>) {
+        if R::PLAIN {
+            self.sum_masses_and_forces();
+        } else {
+            self.lump_mass();
+            self.integrate_stress();
+        }
+        self.add_tractions(forcing);
+    }
+
+    /// Both in one pass, where the particles are the points of both.
+    #[inline(never)]
+    fn sum_masses_and_forces(&mut self) {
+        let (basis, grid, phase, particles) = (&self.basis, &self.grid, &self.phase, &self.particles);
+        let Spans {
+            particles: spans,
+            scalars,
+            vectors,
+            ..
+        } = &mut self.spans;
+        let (span, parallel) = share(spans, particles.len(), PARTICLES);
+        let work = (
+            &particles.position[..],
+            self.bins.cells(),
+            (&particles.mass[..], &particles.volume[..]),
+            (&particles.stress[..], &particles.phase[..]),
+            Windows::new(spans, scalars, &mut self.dofs.mass, 1),
+            Windows::new(spans, vectors, &mut self.dofs.force, 1),
+        );
+        each_span(parallel, span, work, &|_,
+                                          (
+            positions,
+            cells,
+            bodies,
+            stresses,
+            mass,
+            force,
+        )| {
+            let ((first, mass), (_, force)) = (mass.one(), force.one());
+            let force = &mut force[..mass.len()];
+            let bodies = bodies.0.iter().zip(bodies.1);
+            let stresses = stresses.0.iter().zip(stresses.1);
+            let places = positions.iter().zip(cells);
+            for (((x, cell), (&m, &volume)), (stress, data)) in places.zip(bodies).zip(stresses) {
+                let weighted = if P::COUPLED {
+                    phase.total_stress(stress, data) * volume
+                } else {
+                    *stress * volume
+                };
+                basis.for_each(grid, cell, x, |i, phi, gradient| {
+                    mass[i - first] += m * phi;
+                    force[i - first] -= weighted * gradient;
+                });
+            }
+        });
+        add_up(spans, scalars, &mut self.dofs.mass, 1);
+        add_up(spans, vectors, &mut self.dofs.force, 1);
+    }
+
+    fn integrate_stress(&mut self) {
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         let effective = &self.particles.stress;
-        let (basis, force) = (&self.basis, &mut self.dofs.force);
+        let assembly = Assembly {
+            basis: &self.basis,
+            reconstruction: &mut self.reconstruction,
+            cloud,
+            spans: &mut self.spans,
+            force: &mut self.dofs.force,
+        };
         // Two closures rather than one with a branch: what a closure holds costs instructions even where it is not used.
         if P::COUPLED {
             let (phase, data) = (&self.phase, &self.particles.phase);
-            let total = |p: usize| phase.total_stress(&effective[p], &data[p]);
-            internal_force(basis, &mut self.reconstruction, &cloud, total, force);
+            assembly.internal_force(|p| phase.total_stress(&effective[p], &data[p]));
         } else {
-            internal_force(basis, &mut self.reconstruction, &cloud, |p| effective[p], force);
+            assembly.internal_force(|p| effective[p]);
         }
-        self.add_tractions(forcing);
     }
 
     /// `m_i = sum_p m_p phi_i`, and `M_ij = sum_p m_p phi_i phi_j` where the reconstruction wants it.
@@ -40,14 +106,26 @@ where
         if P::FLOWS {
             return self.sum_masses(false);
         }
-        let mass = &mut self.dofs.mass;
-        mass.fill(T::zero());
-        for (p, x) in self.particles.position.iter().enumerate() {
-            let m = self.particles.mass[p];
-            let cell = self.bins.cell_of(p);
-            self.basis
-                .for_each(&self.grid, cell, x, |i, phi, _| mass[i] += m * phi);
-        }
+        let (basis, grid, particles) = (&self.basis, &self.grid, &self.particles);
+        let Spans {
+            particles: spans,
+            scalars,
+            ..
+        } = &mut self.spans;
+        let (span, parallel) = share(spans, particles.len(), PARTICLES);
+        let work = (
+            &particles.position[..],
+            self.bins.cells(),
+            &particles.mass[..],
+            Windows::new(spans, scalars, &mut self.dofs.mass, 1),
+        );
+        each_span(parallel, span, work, &|_, (positions, cells, masses, mass)| {
+            let (first, mass) = mass.one();
+            for ((x, cell), &m) in positions.iter().zip(cells).zip(masses) {
+                basis.for_each(grid, cell, x, |i, phi, _| mass[i - first] += m * phi);
+            }
+        });
+        add_up(spans, scalars, &mut self.dofs.mass, 1);
     }
 
     fn assemble_particle_matrix(&mut self) {
@@ -79,25 +157,50 @@ where
     }
 }
 
-/// `f_i = -integral(sigma grad phi_i)`, the stress given per particle.
-pub(super) fn internal_force<T, const D: usize, B, R>(
-    basis: &B,
-    reconstruction: &mut R,
-    cloud: &Cloud<'_, T, D>,
-    stress: impl Fn(usize) -> SMatrix<T, D, D>,
-    force: &mut [SVector<T, D>],
-) where
-    T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
-{
-    force.fill(SVector::zeros());
-    reconstruction.integrate(cloud, stress, |point, weighted| {
-        let add = |i: usize, _, gradient| force[i] -= weighted * gradient;
-        if R::FIELDS_AT_PARTICLES {
-            basis.for_each(cloud.grid, &point.cell, &point.position, add);
-        } else {
-            basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);
+/// What the internal force is made of.
+pub(super) struct Assembly<'a, 'c, T: Scalar, const D: usize, B, R> {
+    pub(super) basis: &'a B,
+    pub(super) reconstruction: &'a mut R,
+    pub(super) cloud: Cloud<'c, T, D>,
+    pub(super) spans: &'a mut Spans<T, D>,
+    pub(super) force: &'a mut [SVector<T, D>],
+}
+
+impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> Assembly<'_, '_, T, D, B, R> {
+    /// `f_i = -integral(sigma grad phi_i)`, the stress given per particle.
+    pub(super) fn internal_force(self, stress: impl Fn(usize) -> SMatrix<T, D, D> + Sync) {
+        let (basis, cloud) = (self.basis, &self.cloud);
+        let add =
+            |point: &Point<T, D>, weighted: SMatrix<T, D, D>, force: &mut [SVector<T, D>], first: usize| {
+                let sink = |i: usize, _, gradient| force[i - first] -= weighted * gradient;
+                if R::FIELDS_AT_PARTICLES {
+                    basis.for_each(cloud.grid, &point.cell, &point.position, sink);
+                } else {
+                    basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, sink);
+                }
+            };
+        if !R::BY_CELLS {
+            let force = self.force;
+            force.fill(SVector::zeros());
+            return self
+                .reconstruction
+                .integrate(cloud, stress, |point, weighted| add(point, weighted, force, 0));
         }
-    });
+        let reconstruction = &*self.reconstruction;
+        let occupied = cloud.bins.occupied();
+        let Spans {
+            cells: spans,
+            vectors,
+            ..
+        } = self.spans;
+        let (span, parallel) = share(spans, occupied.len(), CELLS);
+        let work = (occupied, Windows::new(spans, vectors, self.force, 1));
+        each_span(parallel, span, work, &|place, (cells, force)| {
+            let (first, force) = force.one();
+            reconstruction.integrate_cells(cloud, place..place + cells.len(), &stress, |point, weighted| {
+                add(point, weighted, force, first);
+            });
+        });
+        add_up(spans, vectors, self.force, 1);
+    }
 }

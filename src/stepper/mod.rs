@@ -22,6 +22,7 @@ mod forcing;
 mod liquid;
 mod matrix;
 mod simulation;
+mod spans;
 mod velocity;
 
 pub use critical::{CriticalStep, Mechanism};
@@ -40,6 +41,7 @@ use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Cut, Reconstruction};
 use crate::scalar::Scalar;
+use spans::Spans;
 
 /// All that a [`Stepper`] is made of.
 #[derive(Clone, Debug)]
@@ -92,6 +94,7 @@ where
     /// Sums of both phases side by side, and what moves the particles; empty where no liquid flows.
     sums: Vec<liquid::Sums<T, D>>,
     motion: Vec<[SVector<T, D>; 2]>,
+    spans: Spans<T, D>,
     /// DOFs of each face, in the order of [`Face::all`].
     face_dofs: Vec<Vec<u32>>,
     velocity_mass: VelocityMass,
@@ -199,6 +202,7 @@ where
             })
             .collect();
         let surface_count = surface.len();
+        let spans = Spans::new(particles.len());
         let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
         Ok(Self {
             grid,
@@ -215,6 +219,7 @@ where
             drag: vec![T::zero(); liquid_count],
             sums: vec![liquid::Sums::zero(); liquid_count],
             motion: vec![[SVector::zeros(); 2]; liquid_count],
+            spans,
             face_dofs,
             velocity_mass,
             time: T::zero(),
@@ -238,21 +243,18 @@ where
             self.accelerate_both(dt, forcing);
             self.update_both_velocities(dt, forcing);
         } else {
-            self.lump_mass();
-            self.assemble_forces(forcing);
+            self.assemble(forcing);
             self.accelerate(forcing);
-            self.update_particle_velocities(dt);
-            self.relax();
-            self.map_velocities(forcing);
+            self.update_velocities(dt, forcing);
         }
         self.steps += 1;
         self.time += dt;
         if P::FLOWS {
             self.advance_both(dt)?;
+            self.relocate()
         } else {
-            self.advance(dt)?;
+            self.advance(dt)
         }
-        self.relocate()
     }
 
     /// Takes in where the particles are.
@@ -264,6 +266,7 @@ where
         if B::TAKES_IN_CELLS {
             self.basis.take_in(&self.grid, &self.bins);
         }
+        self.spans.refresh(&self.basis, &self.grid, &self.bins, fits);
         if fits {
             self.cut_cells();
         }
@@ -276,9 +279,6 @@ where
     /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing has used it
     /// since), the velocity after its update and before it is mapped.
     fn relax(&mut self) {
-        if !R::RELAXES {
-            return;
-        }
         let particles = &mut self.particles;
         let cloud = Cloud {
             grid: &self.grid,
@@ -321,6 +321,7 @@ where
     fn relocate(&mut self) -> Result<(), StepError> {
         match self.bins.locate(&self.grid, &self.particles.position) {
             Ok(crossings) => {
+                self.spans.stale |= crossings > 0;
                 self.diagnostics.grid_crossings += crossings;
                 Ok(())
             }

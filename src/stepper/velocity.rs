@@ -3,14 +3,18 @@
 use nalgebra::SVector;
 
 use super::acceleration::Walls;
+use super::diagnostics::Sums;
 use super::matrix::Unknown;
-use super::{Forcing, Stepper, cloud};
+use super::spans::{Spans, share};
+use super::{Dofs, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
+use crate::grid::Grid;
 use crate::law::ConstitutiveLaw;
-use crate::mass::VelocityMass;
+use crate::mass::{VelocityMass, banded_row};
+use crate::parallel::{CELLS, PARTICLES, PerSpan, Windows, add_up, each_span, many_threads};
 use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
+use crate::reconstruction::{Point, Reconstruction};
 use crate::scalar::Scalar;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
@@ -21,29 +25,107 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
-    /// `v_p += dt sum_i phi_i(x_p) a_i`.
-    pub(super) fn update_particle_velocities(&mut self, dt: T) {
-        let acceleration = &self.dofs.force;
-        let particles = &mut self.particles;
-        for (p, x) in particles.position.iter().enumerate() {
-            let mut a = SVector::zeros();
-            let cell = self.bins.cell_of(p);
-            self.basis
-                .for_each(&self.grid, cell, x, |i, phi, _| a += acceleration[i] * phi);
-            particles.velocity[p] += a * dt;
-        }
+    /// Velocities of the particles, and of the DOFs from them.
+    pub(super) fn update_velocities(&mut self, dt: T, forcing: &Forcing<T, D>) {
+        let (sums, mapped) = if R::PLAIN {
+            let sums = self.accelerate_and_map_particles(dt);
+            (sums, self.mapped_totals(sum(&self.dofs.mass)))
+        } else {
+            let sums = self.update_particle_velocities(dt);
+            if R::RELAXES {
+                self.relax();
+            }
+            (sums, self.map_momentum())
+        };
+        self.diagnostics.record(&sums, mapped);
+        self.divide_by_mass(forcing);
     }
 
-    /// DOF velocities by the reconstruction's mass and momentum.
-    pub(super) fn map_velocities(&mut self, forcing: &Forcing<T, D>) {
-        let mapped = self.map_momentum();
-        self.diagnostics.record(&self.particles, mapped);
-        self.divide_by_mass(forcing);
+    /// `v_p += dt sum_i phi_i(x_p) a_i`; returns the particles' momentum.
+    #[inline(never)]
+    pub(super) fn update_particle_velocities(&mut self, dt: T) -> Sums<T, D> {
+        let (basis, grid) = (&self.basis, &self.grid);
+        let acceleration = &self.dofs.force[..];
+        let particles = &mut self.particles;
+        let parallel = particles.len() > PARTICLES && many_threads();
+        let work = (
+            &particles.position[..],
+            &mut particles.velocity[..],
+            &particles.mass[..],
+            self.bins.cells(),
+            PerSpan(&mut self.spans.sums),
+        );
+        each_span(parallel, PARTICLES, work, &|_,
+                                               (
+            positions,
+            velocities,
+            masses,
+            cells,
+            found,
+        )| {
+            let mut sums = Sums::zero();
+            let bodies = velocities.iter_mut().zip(masses);
+            for ((x, cell), (velocity, &mass)) in positions.iter().zip(cells).zip(bodies) {
+                let mut a = SVector::zeros();
+                basis.for_each(grid, cell, x, |i, phi, _| a += acceleration[i] * phi);
+                *velocity += a * dt;
+                sums.add(*velocity * mass);
+            }
+            found.set(sums);
+        });
+        self.spans.momentum()
+    }
+
+    /// The same where the particles are the points of the mapping: their new momenta are summed at the DOFs in the same pass.
+    #[inline(never)]
+    fn accelerate_and_map_particles(&mut self, dt: T) -> Sums<T, D> {
+        let (basis, grid) = (&self.basis, &self.grid);
+        let acceleration = &self.dofs.force[..];
+        let particles = &mut self.particles;
+        let Spans {
+            particles: spans,
+            vectors,
+            sums,
+            ..
+        } = &mut self.spans;
+        let (span, parallel) = share(spans, particles.len(), PARTICLES);
+        sums.fill(Sums::zero());
+        let work = (
+            &particles.position[..],
+            &mut particles.velocity[..],
+            &particles.mass[..],
+            self.bins.cells(),
+            Windows::new(spans, vectors, &mut self.dofs.velocity, 1),
+            PerSpan(&mut sums[..]),
+        );
+        each_span(parallel, span, work, &|_,
+                                          (
+            positions,
+            velocities,
+            masses,
+            cells,
+            momentum,
+            found,
+        )| {
+            let mut sums = Sums::zero();
+            let (first, momentum) = momentum.one();
+            let bodies = velocities.iter_mut().zip(masses);
+            for ((x, cell), (velocity, &mass)) in positions.iter().zip(cells).zip(bodies) {
+                let mut a = SVector::zeros();
+                basis.for_each(grid, cell, x, |i, phi, _| a += acceleration[i] * phi);
+                *velocity += a * dt;
+                let q = *velocity * mass;
+                sums.add(q);
+                basis.for_each(grid, cell, x, |i, phi, _| momentum[i - first] += q * phi);
+            }
+            found.set(sums);
+        });
+        add_up(spans, vectors, &mut self.dofs.velocity, 1);
+        self.spans.momentum()
     }
 
     /// Momentum and mass of the DOFs; returns their totals.
     pub(super) fn map_momentum(&mut self) -> MassMomentum<T, D> {
-        self.dofs.velocity.fill(SVector::zeros());
         let mass = if R::AMOUNTS_AT_PARTICLES {
             self.map_particles()
         } else if self.velocity_mass == VelocityMass::Lumped {
@@ -51,6 +133,11 @@ where
         } else {
             self.map_consistent()
         };
+        self.mapped_totals(mass)
+    }
+
+    /// `mass` and the total momentum of the DOFs.
+    fn mapped_totals(&self, mass: T) -> MassMomentum<T, D> {
         MassMomentum {
             mass,
             momentum: self.dofs.velocity.iter().fold(SVector::zeros(), |s, q| s + q),
@@ -59,6 +146,7 @@ where
 
     /// Momentum straight from the particles; the masses are those of stage 1 already.
     fn map_particles(&mut self) -> T {
+        self.dofs.velocity.fill(SVector::zeros());
         let (basis, grid, momentum) = (&self.basis, &self.grid, &mut self.dofs.velocity);
         let (mass, velocity) = (&self.particles.mass, &self.particles.velocity);
         let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
@@ -80,40 +168,103 @@ where
 
     /// Momentum and row sums of the mass from the reconstructed densities.
     fn map_lumped(&mut self) -> T {
-        let (basis, grid) = (&self.basis, &self.grid);
-        let (momentum, lumped) = (&mut self.dofs.velocity, &mut self.dofs.lumped);
-        lumped.fill(T::zero());
-        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
-        let amounts = amounts(&self.particles.mass, &self.particles.velocity);
-        self.reconstruction
-            .integrate_conserved(&cloud, amounts, |point, amount| {
-                basis.for_each_at_fixed_point(grid, &point.cell, &point.position, |i, phi, _| {
-                    lumped[i] += amount.mass * phi;
-                    momentum[i] += amount.momentum * phi;
-                });
+        let add = |(basis, grid): Places<'_, T, D, B>,
+                   point: &Point<T, D>,
+                   amount: Amount<T, D>,
+                   dofs: DofSums<'_, T, D>| {
+            basis.for_each_at_fixed_point(grid, &point.cell, &point.position, |i, phi, _| {
+                dofs.mass[i - dofs.first] += amount.mass * phi;
+                dofs.momentum[i - dofs.first] += amount.momentum * phi;
             });
+        };
+        self.integrate_amounts(1, Dofs::lumped_mut, &add);
         sum(&self.dofs.lumped)
     }
 
     /// Momentum and mass matrix from the reconstructed densities.
     fn map_consistent(&mut self) -> T {
-        let (basis, grid) = (&self.basis, &self.grid);
-        let (momentum, matrix) = (&mut self.dofs.velocity, &mut self.dofs.matrix);
-        matrix.clear();
-        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
-        let amounts = amounts(&self.particles.mass, &self.particles.velocity);
-        self.reconstruction
-            .integrate_conserved(&cloud, amounts, |point, amount| {
-                let (cell, x) = (&point.cell, &point.position);
-                basis.for_each_at_fixed_point(grid, cell, x, |i, phi_i, _| {
-                    momentum[i] += amount.momentum * phi_i;
-                    let m = amount.mass * phi_i;
-                    basis.for_each_at_fixed_point(grid, cell, x, |j, phi_j, _| {
-                        matrix.add(i, j, m * phi_j);
-                    });
+        let half_band = self.dofs.matrix.half_band();
+        let add = |(basis, grid): Places<'_, T, D, B>,
+                   point: &Point<T, D>,
+                   amount: Amount<T, D>,
+                   dofs: DofSums<'_, T, D>| {
+            let (cell, x) = (&point.cell, &point.position);
+            basis.for_each_at_fixed_point(grid, cell, x, |i, phi_i, _| {
+                dofs.momentum[i - dofs.first] += amount.momentum * phi_i;
+                let m = amount.mass * phi_i;
+                let row = banded_row(dofs.mass, i - dofs.first, half_band);
+                basis.for_each_at_fixed_point(grid, cell, x, |j, phi_j, _| {
+                    if j <= i {
+                        row[half_band + j - i] += m * phi_j;
+                    }
                 });
             });
+        };
+        self.integrate_amounts(half_band + 1, Dofs::matrix_mut, &add);
         self.dofs.matrix.total()
+    }
+
+    /// Streams mass and momentum into sums of `width` numbers of mass and one momentum for each DOF.
+    fn integrate_amounts(
+        &mut self,
+        width: usize,
+        mass: fn(&mut Dofs<T, D>) -> (&mut [T], &mut [SVector<T, D>]),
+        add: &(impl Fn(Places<'_, T, D, B>, &Point<T, D>, Amount<T, D>, DofSums<'_, T, D>) + Sync),
+    ) {
+        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
+        let amounts = amounts(&self.particles.mass, &self.particles.velocity);
+        let (mass, momentum) = mass(&mut self.dofs);
+        let places = (&self.basis, &self.grid);
+        if !R::BY_CELLS {
+            mass.fill(T::zero());
+            momentum.fill(SVector::zeros());
+            return self
+                .reconstruction
+                .integrate_conserved(&cloud, amounts, |point, amount| {
+                    add(
+                        places,
+                        point,
+                        amount,
+                        DofSums {
+                            first: 0,
+                            mass,
+                            momentum,
+                        },
+                    );
+                });
+        }
+        let reconstruction = &self.reconstruction;
+        let occupied = self.bins.occupied();
+        let Spans {
+            cells: spans,
+            matrices,
+            vectors,
+            ..
+        } = &mut self.spans;
+        let (span, parallel) = share(spans, occupied.len(), CELLS);
+        let work = (
+            occupied,
+            Windows::new(spans, matrices, mass, width),
+            Windows::new(spans, vectors, momentum, 1),
+        );
+        each_span(parallel, span, work, &|place, (cells, mass, momentum)| {
+            let ((first, mass), (_, momentum)) = (mass.one(), momentum.one());
+            let cells = place..place + cells.len();
+            reconstruction.integrate_conserved_cells(&cloud, cells, &amounts, |point, amount| {
+                add(
+                    places,
+                    point,
+                    amount,
+                    DofSums {
+                        first,
+                        mass,
+                        momentum,
+                    },
+                );
+            });
+        });
+        add_up(spans, matrices, mass, width);
+        add_up(spans, vectors, momentum, 1);
     }
 
     /// Momentum to velocity, with the told values at held DOFs. DOFs without mass are at rest.
@@ -141,6 +292,26 @@ where
             &dofs.lumped
         };
         divide(&mut dofs.velocity, mass);
+    }
+}
+
+type Places<'a, T, const D: usize, B> = (&'a B, &'a Grid<T, D>);
+type Amount<T, const D: usize> = MassMomentum<T, D>;
+
+/// Sums of the DOFs from `first` on.
+struct DofSums<'a, T, const D: usize> {
+    first: usize,
+    mass: &'a mut [T],
+    momentum: &'a mut [SVector<T, D>],
+}
+
+impl<T: Scalar, const D: usize> Dofs<T, D> {
+    fn lumped_mut(&mut self) -> (&mut [T], &mut [SVector<T, D>]) {
+        (&mut self.lumped, &mut self.velocity)
+    }
+
+    fn matrix_mut(&mut self) -> (&mut [T], &mut [SVector<T, D>]) {
+        (self.matrix.rows_mut(), &mut self.velocity)
     }
 }
 

@@ -1,15 +1,17 @@
 //! Least squares in the Taylor functions of one cell.
 //!
-//! The fit is kept as a triangular matrix `C` that turns the Taylor functions into functions orthonormal on
-//! the cell's particles, `pi = C psi`. Then the coefficients of any field are `C^T sum_p pi(x_p) q_p`: one
-//! geometry serves stress, density and momentum. Where the points are well spread, `C` comes from the Gram
-//! matrix (a few sums per particle). Where they are not, squaring the condition number would cost the
-//! digits that are left (and a Cholesky factorisation of a singular matrix may well succeed with garbage),
-//! so there `C` comes from Givens rotations, one particle at a time. A function is dropped where the points hardly see it:
+//! The fit is kept as a unit triangular matrix `U` that turns the Taylor functions into functions orthogonal on the cell's
+//! particles, `pi = U psi`, and their inverse squares `1/d_k`, `d_k = sum_p pi_k(x_p)^2`. Then the coefficients of any field are
+//! `U^T D^-1 sum_p pi(x_p) q_p`: one geometry serves stress, density and momentum.
+//!
+//! Where the points are well spread, `U` comes from the Gram matrix (a few sums per particle), and the sums may be taken of
+//! `psi q` and turned once per cell. Where they are not, squaring the condition number would cost the digits that are left
+//! (and a Cholesky factorisation of a singular matrix may well succeed with garbage), so there `U` comes from Givens
+//! rotations, one particle at a time, and the sums are of `pi q`. A function is dropped where the points hardly see it:
 //! where what is left of it after the functions before it, in root mean square over the points, is less than a share of
 //! its root mean square over the cell.
 //!
-//! Round-off of the coefficients still counts the condition number of `C` twice, which the share bounds: harmless with the
+//! Round-off of the coefficients still counts the condition number of `U` twice, which the share bounds: harmless with the
 //! default of 2 %, not with a share near the machine epsilon.
 
 use nalgebra::{SMatrix, SVector};
@@ -30,8 +32,54 @@ const GRAM_SHARE: f64 = 1e-2;
 /// Least-squares fit of fields in one cell, prepared for a set of points.
 #[derive(Clone, Copy, Debug)]
 pub struct CellFit<T, const NB: usize> {
-    orthonormal: SMatrix<T, NB, NB>,
-    functions: usize,
+    /// `U` below the diagonal, `1/d_k` on it; a dropped function has zeros.
+    factors: SMatrix<T, NB, NB>,
+    functions: u32,
+    /// Whether sums of `psi q` are accurate enough.
+    well_spread: bool,
+}
+
+/// Sums over a cell's points, of which every fit of the cell is made.
+#[derive(Clone, Copy, Debug)]
+pub struct Gram<T, const NB: usize> {
+    /// `sum_p w_p psi_i(x_p) psi_j(x_p)`, the lower half.
+    products: SMatrix<T, NB, NB>,
+    count: usize,
+}
+
+impl<T: Scalar, const NB: usize> Gram<T, NB> {
+    /// Of the points with local coordinates and positive weights `points`.
+    #[inline(always)]
+    pub fn new<const D: usize>(points: impl Iterator<Item = (SVector<T, D>, T)>) -> Self {
+        let mut gram = Self {
+            products: SMatrix::zeros(),
+            count: 0,
+        };
+        for (s, weight) in points {
+            let psi = taylor_functions::<T, D, NB>(&s);
+            for i in 0..NB {
+                let weighted = weight * psi[i];
+                for j in 0..=i {
+                    gram.products[(i, j)] += weighted * psi[j];
+                }
+            }
+            gram.count += 1;
+        }
+        gram
+    }
+
+    /// `sum_p w_p psi_k(x_p)`.
+    #[inline(always)]
+    pub fn sum(&self, k: usize) -> T {
+        self.products[(k, 0)]
+    }
+
+    /// Square below which what is left of a function counts as nothing.
+    #[inline(always)]
+    fn least<const D: usize>(&self, tolerance: T) -> SVector<T, NB> {
+        let scale = tolerance * tolerance * self.products[(0, 0)];
+        taylor_sizes::<T, D, NB>().map(|size| size * size * scale)
+    }
 }
 
 impl<T: Scalar, const NB: usize> CellFit<T, NB> {
@@ -55,86 +103,96 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         first: usize,
         tolerance: T,
     ) -> Self {
-        let (count, total) = points
-            .clone()
-            .fold((0, T::zero()), |(count, total), (_, weight)| {
-                (count + 1, total + weight)
-            });
-        let rows = points.map(|(s, weight)| taylor_functions::<T, D, NB>(&s) * weight.sqrt());
-        let end = NB.min(count);
-        let mut wanted = [false; NB];
-        wanted[first.min(end)..end].fill(true);
-        let least = taylor_sizes::<T, D, NB>() * (tolerance * total.sqrt());
-        Self::from_gram(rows.clone(), &wanted, &least)
-            .unwrap_or_else(|| Self::from_rotations(rows, wanted, &least))
+        let gram = Gram::new(points.clone());
+        Self::with_gram(&gram, points, first, tolerance)
     }
 
-    /// Cholesky factorisation of the Gram matrix; `None` where it loses too many digits or leaves too little of a
-    /// function.
-    fn from_gram(
-        rows: impl Iterator<Item = SVector<T, NB>>,
-        wanted: &[bool; NB],
-        least: &SVector<T, NB>,
-    ) -> Option<Self> {
-        let mut gram = SMatrix::<T, NB, NB>::zeros();
-        for psi in rows {
-            for i in 0..NB {
-                for j in 0..=i {
-                    gram[(i, j)] += psi[i] * psi[j];
-                }
-            }
+    /// The same with the sums over the points at hand.
+    #[inline(always)]
+    pub fn with_gram<const D: usize>(
+        gram: &Gram<T, NB>,
+        points: impl Iterator<Item = (SVector<T, D>, T)> + Clone,
+        first: usize,
+        tolerance: T,
+    ) -> Self {
+        let end = NB.min(gram.count);
+        let least = gram.least::<D>(tolerance);
+        if let (true, Some(fit)) = (end == NB, Self::from_gram(gram, first, &least)) {
+            return fit;
         }
-        let mut r = SMatrix::<T, NB, NB>::zeros();
-        for k in (0..NB).filter(|&k| wanted[k]) {
+        let mut wanted = [false; NB];
+        wanted[first.min(end)..end].fill(true);
+        Self::from_rotations(points, wanted, &least)
+    }
+
+    /// `L D L^T` factorisation of the Gram matrix; `None` where it loses too many digits or leaves too little of a
+    /// function.
+    #[inline(always)]
+    fn from_gram(gram: &Gram<T, NB>, first: usize, least: &SVector<T, NB>) -> Option<Self> {
+        let gram = &gram.products;
+        // Rows of L below the diagonal, and the inverse squares on it.
+        let mut l = SMatrix::<T, NB, NB>::zeros();
+        for k in first..NB {
             let mut left = gram[(k, k)];
-            for j in (0..k).filter(|&j| wanted[j]) {
-                let dot = (0..j).fold(gram[(k, j)], |sum, i| sum - r[(i, j)] * r[(i, k)]);
-                r[(j, k)] = dot / r[(j, j)];
-                left -= r[(j, k)] * r[(j, k)];
+            // L D, row k.
+            let mut row = SVector::<T, NB>::zeros();
+            for j in first..k {
+                let dot = (first..j).fold(gram[(k, j)], |sum, i| sum - l[(j, i)] * row[i]);
+                row[j] = dot;
+                l[(k, j)] = dot * l[(j, j)];
+                left -= l[(k, j)] * dot;
             }
-            if left <= gram[(k, k)] * T::lit(GRAM_SHARE) || left <= least[k] * least[k] {
+            if left <= gram[(k, k)] * T::lit(GRAM_SHARE) || left <= least[k] {
                 return None;
             }
-            r[(k, k)] = left.sqrt();
+            l[(k, k)] = T::one() / left;
         }
-        Some(Self::from_factor(&r, wanted))
+        Some(Self {
+            factors: inverse_below_the_diagonal(&l, first),
+            functions: (NB - first) as u32,
+            well_spread: true,
+        })
     }
 
     /// QR factorisation by Givens rotations, again without each function of which too little is left.
-    fn from_rotations(
-        rows: impl Iterator<Item = SVector<T, NB>> + Clone,
+    #[cold]
+    #[inline(never)]
+    fn from_rotations<const D: usize>(
+        points: impl Iterator<Item = (SVector<T, D>, T)> + Clone,
         mut wanted: [bool; NB],
         least: &SVector<T, NB>,
     ) -> Self {
-        loop {
+        let rows = points.map(|(s, weight)| taylor_functions::<T, D, NB>(&s) * weight.sqrt());
+        let r = loop {
             let r = rotate(rows.clone(), &wanted);
-            match (0..NB).find(|&k| wanted[k] && r[(k, k)].abs() <= least[k]) {
+            match (0..NB).find(|&k| wanted[k] && r[(k, k)] * r[(k, k)] <= least[k]) {
                 Some(k) => wanted[k] = false,
-                None => return Self::from_factor(&r, &wanted),
+                None => break r,
             }
-        }
-    }
-
-    /// `C = R^-T`, row by row: `pi_k = (psi_k - sum_j r_jk pi_j) / r_kk`.
-    fn from_factor(r: &SMatrix<T, NB, NB>, wanted: &[bool; NB]) -> Self {
-        let mut c = SMatrix::<T, NB, NB>::zeros();
+        };
+        let mut l = SMatrix::<T, NB, NB>::zeros();
         for k in (0..NB).filter(|&k| wanted[k]) {
-            let mut row = SMatrix::<T, 1, NB>::zeros();
-            row[k] = T::one();
             for j in (0..k).filter(|&j| wanted[j]) {
-                row -= c.row(j) * r[(j, k)];
+                l[(k, j)] = r[(j, k)] / r[(j, j)];
             }
-            c.set_row(k, &(row / r[(k, k)]));
+            l[(k, k)] = T::one() / (r[(k, k)] * r[(k, k)]);
         }
         Self {
-            orthonormal: c,
-            functions: wanted.iter().filter(|&&w| w).count(),
+            factors: inverse_below_the_diagonal(&l, 0),
+            functions: wanted.iter().filter(|&&w| w).count() as u32,
+            well_spread: false,
         }
     }
 
     /// Number of functions in the fit; a given mean is not counted.
     pub fn functions(&self) -> usize {
-        self.functions
+        self.functions as usize
+    }
+
+    /// Whether the points are so well spread that [`CellFit::from_sums`] loses no digits.
+    #[inline(always)]
+    pub fn is_well_spread(&self) -> bool {
+        self.well_spread
     }
 
     /// Coefficients of the field with the given `samples` (local coordinates, weight and value at the same points as
@@ -145,24 +203,70 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         samples: impl Iterator<Item = (SVector<T, D>, T, Q)>,
         mean: Q,
     ) -> [Q; NB] {
-        let mut moments = [Q::zero(); NB];
+        let mut sums = [Q::zero(); NB];
+        if self.well_spread {
+            for (s, weight, value) in samples {
+                let psi = taylor_functions::<T, D, NB>(&s);
+                let mut rest = value;
+                rest.add_scaled(-T::one(), mean);
+                for k in 0..NB {
+                    sums[k].add_scaled(weight * psi[k], rest);
+                }
+            }
+            return self.from_sums(sums);
+        }
         for (s, weight, value) in samples {
             let psi = taylor_functions::<T, D, NB>(&s);
             let mut rest = value;
             rest.add_scaled(-T::one(), mean);
             for k in 0..NB {
-                let pi = (0..=k).fold(T::zero(), |sum, j| sum + self.orthonormal[(k, j)] * psi[j]);
-                moments[k].add_scaled(weight * pi, rest);
+                let pi = (0..k).fold(psi[k], |sum, j| sum + self.factors[(k, j)] * psi[j]);
+                sums[k].add_scaled(weight * pi, rest);
             }
         }
+        self.from_orthogonal_sums(sums)
+    }
+
+    /// Coefficients from the sums of `w psi_k q` over the points. Only where [`CellFit::is_well_spread`].
+    #[inline(always)]
+    pub fn from_sums<Q: Field<T>>(&self, mut sums: [Q; NB]) -> [Q; NB] {
+        for k in (1..NB).rev() {
+            for j in 0..k {
+                let below = sums[j];
+                sums[k].add_scaled(self.factors[(k, j)], below);
+            }
+        }
+        self.from_orthogonal_sums(sums)
+    }
+
+    /// `U^T D^-1` times the sums of `w pi_k q`.
+    #[inline(always)]
+    fn from_orthogonal_sums<Q: Field<T>>(&self, sums: [Q; NB]) -> [Q; NB] {
+        let scaled: [Q; NB] = std::array::from_fn(|k| sums[k].scaled(self.factors[(k, k)]));
         std::array::from_fn(|j| {
-            let mut coefficient = Q::zero();
-            for k in j..NB {
-                coefficient.add_scaled(self.orthonormal[(k, j)], moments[k]);
+            let mut coefficient = scaled[j];
+            for k in j + 1..NB {
+                coefficient.add_scaled(self.factors[(k, j)], scaled[k]);
             }
             coefficient
         })
     }
+}
+
+/// The unit triangular inverse of a unit lower triangular matrix, whose diagonal holds other things and is kept, from row and
+/// column `first` on.
+#[inline(always)]
+fn inverse_below_the_diagonal<T: Scalar, const NB: usize>(
+    l: &SMatrix<T, NB, NB>,
+    first: usize,
+) -> SMatrix<T, NB, NB> {
+    let mut inverse = *l;
+    for k in first..NB {
+        for j in first..k {
+            inverse[(k, j)] = (j + 1..k).fold(-l[(k, j)], |sum, i| sum - l[(k, i)] * inverse[(i, j)]);
+        }
+    }
+    inverse
 }
 
 /// Upper triangular factor of the matrix with the given rows, `wanted` columns only (the others stay zero).

@@ -13,4 +13,4 @@ mod basis;
 mod fit;
 
 pub use basis::taylor_functions;
-pub use fit::{CellFit, DEFAULT_TOLERANCE};
+pub use fit::{CellFit, DEFAULT_TOLERANCE, Gram};

@@ -3,7 +3,6 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::super::Stepper;
-use super::super::advance::advance_solid;
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::law::ConstitutiveLaw;
@@ -22,33 +21,33 @@ where
     /// Particles move with the solid; the pressure follows both velocities.
     #[inline(never)]
     pub(in super::super) fn advance_both(&mut self, dt: T) -> Result<(), StepError> {
-        let motion = &self.motion;
-        let particles = &mut self.particles;
-        for p in 0..particles.position.len() {
+        let (basis, grid, law, phase) = (&self.basis, &self.grid, &self.law, &self.phase);
+        let (motion, steps) = (&self.motion[..], self.steps);
+        let places = self.bins.cells().iter();
+        for (p, (mut particle, cell)) in self.particles.movable().each().zip(places).enumerate() {
             let mut v = SVector::zeros();
             let mut gradient = SMatrix::<T, D, D>::zeros();
             let mut liquid_gradient = SMatrix::<T, D, D>::zeros();
-            let (cell, x) = (self.bins.cell_of(p), &particles.position[p]);
-            self.basis.for_each(&self.grid, cell, x, |i, phi, grad_phi| {
+            basis.for_each(grid, cell, particle.position, |i, phi, grad_phi| {
                 let [solid, liquid] = &motion[i];
                 v += solid * phi;
                 gradient += solid * grad_phi.transpose();
                 liquid_gradient += liquid * grad_phi.transpose();
             });
             let increment = gradient * dt;
-            self.phase
-                .update_with_flow(&increment, &(liquid_gradient * dt), &mut particles.phase[p]);
-            let pressure = self.phase.liquid(&particles.phase[p]).pressure;
+            phase.update_with_flow(&increment, &(liquid_gradient * dt), particle.phase);
+            let pressure = phase.liquid(particle.phase).pressure;
             if !pressure.is_finite() {
                 return Err(StepError::Invalid {
-                    step: self.steps,
+                    step: steps,
                     particle: p,
                     name: "pore pressure",
                     value: pressure.primal(),
                 });
             }
-            advance_solid(&self.law, particles, p, &(v * dt), &increment)
-                .map_err(|volume| StepError::volume(self.steps, p, volume))?;
+            particle
+                .advance(law, &(v * dt), &increment)
+                .map_err(|volume| StepError::volume(steps, p, volume))?;
         }
         Ok(())
     }

@@ -1,0 +1,92 @@
+//! Work cut into spans that any number of threads may share without changing a bit of the result.
+//!
+//! A pass over particles or cells is cut into spans of fixed length. Each span writes to places of its own: its share of
+//! the particles, its *window* of the DOFs, its partial result. What several spans contribute to is added up span by span,
+//! in order. So the result depends on where the cuts are, which is fixed, and not on who did which span.
+//!
+//! Spans are halved recursively ([`each_span`]) and shared by `rayon::join`: nothing is allocated. Without the feature `rayon`,
+//! or for one thread, the halves follow one another.
+
+mod sliced;
+mod windows;
+
+pub(crate) use sliced::{PerSpan, Sliced};
+pub(crate) use windows::{SpanWindow, Windows, add_up};
+
+/// Particles in a span.
+pub(crate) const PARTICLES: usize = 4096;
+/// Occupied cells in a span.
+pub(crate) const CELLS: usize = 512;
+
+/// Calls `f(first, part)` for each span of `work`, `first` the index of its first item; several at once if `parallel`.
+pub(crate) fn each_span<W: Sliced>(parallel: bool, span: usize, work: W, f: &(impl Fn(usize, W) + Sync)) {
+    halve(parallel, span, 0, work, f);
+}
+
+fn halve<W: Sliced>(parallel: bool, span: usize, first: usize, work: W, f: &(impl Fn(usize, W) + Sync)) {
+    let spans = work.items().div_ceil(span);
+    if spans <= 1 {
+        return f(first, work);
+    }
+    let (left, right) = work.split(spans / 2, spans / 2 * span);
+    let middle = first + spans / 2 * span;
+    both(
+        parallel,
+        || halve(parallel, span, first, left, f),
+        || halve(parallel, span, middle, right, f),
+    );
+}
+
+#[cfg(feature = "rayon")]
+fn both(parallel: bool, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
+    if parallel {
+        rayon::join(a, b);
+    } else {
+        a();
+        b();
+    }
+}
+
+#[cfg(not(feature = "rayon"))]
+fn both(_parallel: bool, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
+    a();
+    b();
+}
+
+/// Whether there is more than one thread to share spans.
+pub(crate) fn many_threads() -> bool {
+    #[cfg(feature = "rayon")]
+    return rayon::current_num_threads() > 1;
+    #[cfg(not(feature = "rayon"))]
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_span_is_visited_once_with_its_own_part() {
+        for (count, parallel) in [
+            (0, false),
+            (1, true),
+            (9, false),
+            (10, true),
+            (11, true),
+            (1000, true),
+        ] {
+            let mut numbers = vec![0_usize; count];
+            let mut sums = vec![0_usize; count.div_ceil(10)];
+            let work = (&mut numbers[..], PerSpan(&mut sums[..]));
+            each_span(parallel, 10, work, &|first, (numbers, PerSpan(sums))| {
+                for (k, number) in numbers.iter_mut().enumerate() {
+                    *number += first + k;
+                    sums[0] += 1;
+                }
+            });
+            assert!(numbers.iter().enumerate().all(|(k, &number)| k == number));
+            assert_eq!(sums.iter().sum::<usize>(), count);
+            assert!(sums.iter().rev().skip(1).all(|&n| n == 10));
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! What can be cut at a span.
+
+/// Slices of equal length, or one value a span, that are cut together.
+pub(crate) trait Sliced: Sized + Send {
+    /// Number of items.
+    fn items(&self) -> usize;
+
+    /// The first `spans` spans, which have `items` items, and the rest.
+    fn split(self, spans: usize, items: usize) -> (Self, Self);
+}
+
+impl<T: Sync> Sliced for &[T] {
+    fn items(&self) -> usize {
+        self.len()
+    }
+
+    fn split(self, _spans: usize, items: usize) -> (Self, Self) {
+        self.split_at(items.min(self.len()))
+    }
+}
+
+impl<T: Send> Sliced for &mut [T] {
+    fn items(&self) -> usize {
+        self.len()
+    }
+
+    fn split(self, _spans: usize, items: usize) -> (Self, Self) {
+        let middle = items.min(self.len());
+        self.split_at_mut(middle)
+    }
+}
+
+/// One value for each span.
+pub(crate) struct PerSpan<'a, T>(pub(crate) &'a mut [T]);
+
+impl<T> PerSpan<'_, T> {
+    /// Sets the value of the one span that is left.
+    #[inline(always)]
+    pub(crate) fn set(self, value: T) {
+        if let [slot, ..] = self.0 {
+            *slot = value;
+        }
+    }
+}
+
+impl<T: Send> Sliced for PerSpan<'_, T> {
+    fn items(&self) -> usize {
+        0
+    }
+
+    fn split(self, spans: usize, _items: usize) -> (Self, Self) {
+        let middle = spans.min(self.0.len());
+        let (left, right) = self.0.split_at_mut(middle);
+        (Self(left), Self(right))
+    }
+}
+
+macro_rules! tuple {
+    ($($name:ident $field:tt),+) => {
+        /// The first one is asked for the number of items.
+        impl<$($name: Sliced),+> Sliced for ($($name,)+) {
+            fn items(&self) -> usize {
+                self.0.items()
+            }
+
+            fn split(self, spans: usize, items: usize) -> (Self, Self) {
+                let parts = ($(self.$field.split(spans, items),)+);
+                (($(parts.$field.0,)+), ($(parts.$field.1,)+))
+            }
+        }
+    };
+}
+
+tuple!(A 0, B 1);
+tuple!(A 0, B 1, C 2);
+tuple!(A 0, B 1, C 2, D 3);
+tuple!(A 0, B 1, C 2, D 3, E 4);
+tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
+tuple!(A 0, B 1, C 2, D 3, E 4, F 5, G 6);
+tuple!(A 0, B 1, C 2, D 3, E 4, F 5, G 6, H 7);

@@ -1,0 +1,78 @@
+//! What a step changes of particles when they move.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::parallel::Sliced;
+
+/// What moves and deforms of particles.
+pub(crate) struct Movables<'a, T, const D: usize, S, P> {
+    pub(super) position: &'a mut [SVector<T, D>],
+    pub(super) displacement: &'a mut [SVector<T, D>],
+    pub(super) stress: &'a mut [SMatrix<T, D, D>],
+    pub(super) volume: &'a mut [T],
+    pub(super) state: &'a mut [S],
+    pub(super) phase: &'a mut [P],
+}
+
+/// What moves and deforms of one particle.
+pub(crate) struct Movable<'a, T, const D: usize, S, P> {
+    pub(crate) position: &'a mut SVector<T, D>,
+    pub(crate) displacement: &'a mut SVector<T, D>,
+    pub(crate) stress: &'a mut SMatrix<T, D, D>,
+    pub(crate) volume: &'a mut T,
+    pub(crate) state: &'a mut S,
+    pub(crate) phase: &'a mut P,
+}
+
+impl<'a, T, const D: usize, S, P> Movables<'a, T, D, S, P> {
+    /// One after the other.
+    #[inline(always)]
+    pub(crate) fn each(self) -> impl Iterator<Item = Movable<'a, T, D, S, P>> {
+        let places = self.position.iter_mut().zip(self.displacement);
+        let bodies = self.stress.iter_mut().zip(self.volume);
+        let others = self.state.iter_mut().zip(self.phase);
+        places.zip(bodies).zip(others).map(
+            |(((position, displacement), (stress, volume)), (state, phase))| Movable {
+                position,
+                displacement,
+                stress,
+                volume,
+                state,
+                phase,
+            },
+        )
+    }
+}
+
+impl<T: Send, const D: usize, S: Send, P: Send> Sliced for Movables<'_, T, D, S, P> {
+    fn items(&self) -> usize {
+        self.position.len()
+    }
+
+    fn split(self, _spans: usize, items: usize) -> (Self, Self) {
+        let middle = items.min(self.position.len());
+        let (position, later_position) = self.position.split_at_mut(middle);
+        let (displacement, later_displacement) = self.displacement.split_at_mut(middle);
+        let (stress, later_stress) = self.stress.split_at_mut(middle);
+        let (volume, later_volume) = self.volume.split_at_mut(middle);
+        let (state, later_state) = self.state.split_at_mut(middle);
+        let (phase, later_phase) = self.phase.split_at_mut(middle);
+        let first = Self {
+            position,
+            displacement,
+            stress,
+            volume,
+            state,
+            phase,
+        };
+        let rest = Self {
+            position: later_position,
+            displacement: later_displacement,
+            stress: later_stress,
+            volume: later_volume,
+            state: later_state,
+            phase: later_phase,
+        };
+        (first, rest)
+    }
+}
