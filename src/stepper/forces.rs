@@ -94,7 +94,7 @@ pub(super) fn internal_force<T, const D: usize, B, R>(
     force.fill(SVector::zeros());
     reconstruction.integrate(cloud, stress, |point, weighted| {
         let add = |i: usize, _, gradient| force[i] -= weighted * gradient;
-        if R::FIELDS_AT_PARTICLES {
+        if R::FIELDS_MOVE {
             basis.for_each(cloud.grid, &point.cell, &point.position, add);
         } else {
             basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);
