@@ -82,7 +82,7 @@ pub struct Method {
     pub reconstruction: ReconstructionKind,
     /// Sub-points of each particle's domain, 1 to [`SubPoints::MOST`]; one is the particle itself. More with dual domain and
     /// Shepard only.
-    pub subpoints: usize,
+    pub subpoints: u8,
 }
 
 /// What is done with a method's types. Written once, it compiles for every method.
@@ -145,7 +145,7 @@ impl Method {
     }
 
     /// Dual domain with Shepard, the stress of each particle spread over this many sub-points.
-    pub const fn sub_points(subpoints: usize) -> Self {
+    pub const fn sub_points(subpoints: u8) -> Self {
         Self {
             subpoints,
             ..Self::new(Basis::DualDomain, ReconstructionKind::Shepard)
@@ -192,7 +192,7 @@ impl Method {
         if (self.basis, self.reconstruction) != (Basis::DualDomain, ReconstructionKind::Shepard) {
             return None;
         }
-        let sub_points = SubPoints::new(self.subpoints).ok()?;
+        let sub_points = SubPoints::new(self.subpoints.into()).ok()?;
         Some(visitor.visit(DualDomain::new(), sub_points))
     }
 

@@ -31,14 +31,14 @@ pub struct SubPoints {
 
 impl SubPoints {
     /// Most sub-points along an axis.
-    pub const MOST: usize = 128;
+    pub const MOST: u8 = 128;
 
     /// `per_axis` sub-points along each axis of a domain, 1 to [`SubPoints::MOST`].
     ///
     /// # Errors
     /// If there are fewer or more.
     pub fn new(per_axis: usize) -> Result<Self, SetupError> {
-        if (1..=Self::MOST).contains(&per_axis) {
+        if (1..=usize::from(Self::MOST)).contains(&per_axis) {
             return Ok(Self { per_axis });
         }
         Err(SetupError::Constant {

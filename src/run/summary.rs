@@ -20,7 +20,7 @@ pub struct MethodSummary {
     /// Reconstruction.
     pub reconstruction: &'static str,
     /// Sub-points of each particle; 1 is the particle itself.
-    pub subpoints: usize,
+    pub subpoints: u8,
     /// Mass behind the DOF velocities.
     pub velocity_mass: &'static str,
     /// Number of phases.

@@ -56,7 +56,7 @@ pub struct Method {
     /// From particle data to integrals.
     pub reconstruction: ReconstructionKind,
     /// Sub-points of each particle's domain, 1 to 128; more than one with dual domain and Shepard only.
-    pub subpoints: usize,
+    pub subpoints: u8,
     /// Mass behind the DOFs' velocities.
     pub velocity_mass: VelocityMass,
     /// Floating-point type.

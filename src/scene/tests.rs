@@ -108,7 +108,7 @@ fn every_basis_and_law_can_be_named() {
         Basis::DualDomain
     );
     assert_eq!(basis(&["method.degree=3"]), Basis::BSpline { degree: 3 });
-    let sub_points = |n: usize| {
+    let sub_points = |n: u8| {
         let told = format!("method.subpoints={n}");
         read(&["method.basis=dual-domain", &told])
             .unwrap()

@@ -35,7 +35,7 @@ pub struct Row {
     /// Reconstruction.
     pub reconstruction: &'static str,
     /// Sub-points of each particle; 1 is the particle itself.
-    pub subpoints: usize,
+    pub subpoints: u8,
     /// Number of cells.
     pub cells: usize,
     /// Number of particles.

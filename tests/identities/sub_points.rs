@@ -128,7 +128,7 @@ proptest! {
     ) {
         spread_over_the_domain::<f64, 1>(per_axis, &line)?;
         spread_over_the_domain::<f32, 1>(per_axis, &line)?;
-        spread_over_the_domain::<f64, 1>(SubPoints::MOST, &line)?;
+        spread_over_the_domain::<f64, 1>(SubPoints::MOST.into(), &line)?;
         spread_over_the_domain::<f64, 2>(per_axis, &plane)?;
         spread_over_the_domain::<f64, 3>(1 + per_axis / 3, &space)?;
     }

@@ -86,7 +86,7 @@ fn subpoints(
     section: &Section<'_>,
     basis: Basis,
     reconstruction: ReconstructionKind,
-) -> Result<usize, SceneError> {
+) -> Result<u8, SceneError> {
     let Some(item) = section.optional("subpoints") else {
         return Ok(1);
     };
@@ -95,7 +95,8 @@ fn subpoints(
             "it goes with method.basis = \"dual-domain\" and method.reconstruction = \"shepard\" only; leave it out",
         ));
     }
-    item.size(1, SubPoints::MOST as u64)
+    let count = item.count(1, SubPoints::MOST.into())?;
+    u8::try_from(count).map_err(|_| item.not_allowed("a smaller number"))
 }
 
 fn velocity_mass(
