@@ -22,8 +22,8 @@ use crate::scalar::Scalar;
 ///   to the nearest point of its particle's cell. The weight stays, and no force is put on a DOF beyond the material,
 ///   which has no mass to take it and would lose its momentum.
 ///
-/// The strain of a particle is still taken at the particle itself, not averaged over its domain: that is the published method,
-/// and it means that the work of the force and that of the stress differ by a second-order term.
+/// Sub-points serve the force alone. The strain of a particle is taken at the particle itself, not averaged over its domain, so
+/// that the work of the force and that of the stress differ: with one particle per cell enough to gain energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SubPoints {
     per_axis: usize,

@@ -41,7 +41,6 @@ fn sub_points_mend_a_gradient_that_jumps_and_not_one_that_does_not() {
     for (row, printed, swapped) in [(rows[0], 4.313e-3, 4.645e-2), (rows[1], 4.307e-3, 1.539e-2)] {
         near(row.printed.fixed, printed);
         near(row.swapped.fixed, swapped);
-        assert!(row.sub_points == 1 || row.swapped.seconds > 0.0);
     }
 }
 
