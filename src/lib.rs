@@ -8,7 +8,7 @@
 //! | trait | says | comes as |
 //! |---|---|---|
 //! | [`BasisFamily`](basis::BasisFamily) | which DOFs a point sees | [`Linear`](basis::Linear), [`DualDomain`](basis::DualDomain), [`BSpline`](basis::BSpline) |
-//! | [`Reconstruction`](reconstruction::Reconstruction) | how particle data become integrals | [`Shepard`](reconstruction::Shepard), [`Taylor`](reconstruction::Taylor), [`RelaxedTaylor`](reconstruction::RelaxedTaylor), [`CubicSpline`](reconstruction::CubicSpline) |
+//! | [`Reconstruction`](reconstruction::Reconstruction) | how particle data become integrals | [`Shepard`](reconstruction::Shepard), [`SubPoints`](reconstruction::SubPoints), [`Taylor`](reconstruction::Taylor), [`RelaxedTaylor`](reconstruction::RelaxedTaylor), [`CubicSpline`](reconstruction::CubicSpline) |
 //! | [`ConstitutiveLaw`](law::ConstitutiveLaw) | how stress follows strain | [`LinearElastic`](law::LinearElastic), [`Hill`](law::Hill), [`NeoHookean`](law::NeoHookean), [`Logarithmic`](law::Logarithmic) |
 //! | [`Phase`](phase::Phase) | what shares the pores with the solid | [`OnePhase`](phase::OnePhase), [`TwoPhase`](phase::TwoPhase) |
 //!

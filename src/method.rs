@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::basis::{BSpline, BasisFamily, DualDomain, Linear};
-use crate::reconstruction::{CubicSpline, Reconstruction, RelaxedTaylor, Shepard, Taylor};
+use crate::reconstruction::{CubicSpline, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor};
 use crate::scalar::Scalar;
 
 /// A basis family by name.
@@ -73,13 +73,16 @@ impl ReconstructionKind {
     }
 }
 
-/// A basis family with a reconstruction, written `basis+reconstruction`.
+/// A basis family with a reconstruction, written `basis+reconstruction`, with sub-points `dual-domain+shepard4`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Method {
     /// The basis family.
     pub basis: Basis,
     /// The reconstruction.
     pub reconstruction: ReconstructionKind,
+    /// Sub-points of each particle's domain, 1 to [`SubPoints::MOST`]; one is the particle itself. More with dual domain and
+    /// Shepard only.
+    pub subpoints: u8,
 }
 
 /// What is done with a method's types. Written once, it compiles for every method.
@@ -132,15 +135,24 @@ impl Method {
         ]
     };
 
-    /// A pair.
+    /// A pair, with the particles themselves as their only sub-points.
     pub const fn new(basis: Basis, reconstruction: ReconstructionKind) -> Self {
         Self {
             basis,
             reconstruction,
+            subpoints: 1,
         }
     }
 
-    /// Name in the literature: MPM, DDMPM or BSMPM, with TLS or cubic spline where there is one.
+    /// Dual domain with Shepard, the stress of each particle spread over this many sub-points.
+    pub const fn sub_points(subpoints: u8) -> Self {
+        Self {
+            subpoints,
+            ..Self::new(Basis::DualDomain, ReconstructionKind::Shepard)
+        }
+    }
+
+    /// Name in the literature: MPM, DDMPM or BSMPM, with TLS, cubic spline or sub-points where there are any.
     pub fn literature_name(self) -> String {
         let basis = match self.basis {
             Basis::Linear => "MPM".into(),
@@ -149,6 +161,9 @@ impl Method {
             Basis::BSpline { degree } => format!("BSMPM degree {degree}"),
         };
         match self.reconstruction {
+            ReconstructionKind::Shepard if self.subpoints != 1 => {
+                format!("{basis} + {} sub-points", self.subpoints)
+            }
             ReconstructionKind::Shepard => basis,
             ReconstructionKind::Taylor => format!("{basis} + TLS"),
             ReconstructionKind::RelaxedTaylor => format!("{basis} + relaxed TLS"),
@@ -156,8 +171,12 @@ impl Method {
         }
     }
 
-    /// Calls `visitor` with the method's types, in 1-D. `None` for a degree that does not exist.
+    /// Calls `visitor` with the method's types, in 1-D. `None` for a degree that does not exist, or a number of sub-points that
+    /// the pair does not have.
     pub fn dispatch<T: Scalar, V: MethodVisitor<T>>(self, visitor: V) -> Option<V::Output> {
+        if self.subpoints != 1 {
+            return self.with_sub_points(visitor);
+        }
         match self.basis {
             Basis::Linear => Some(self.with_basis(Linear, visitor)),
             Basis::DualDomain => Some(self.with_basis(DualDomain::new(), visitor)),
@@ -166,6 +185,15 @@ impl Method {
             Basis::BSpline { degree: 3 } => Some(self.with_basis(BSpline::<3>, visitor)),
             Basis::BSpline { .. } => None,
         }
+    }
+
+    /// Here alone: one type for every number, and none for the pairs that are not published.
+    fn with_sub_points<T: Scalar, V: MethodVisitor<T>>(self, visitor: V) -> Option<V::Output> {
+        if (self.basis, self.reconstruction) != (Basis::DualDomain, ReconstructionKind::Shepard) {
+            return None;
+        }
+        let sub_points = SubPoints::new(self.subpoints.into()).ok()?;
+        Some(visitor.visit(DualDomain::new(), sub_points))
     }
 
     fn with_basis<T, B, V>(self, basis: B, visitor: V) -> V::Output
@@ -188,6 +216,10 @@ impl Method {
 
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}+{}", self.basis, self.reconstruction.name())
+        write!(f, "{}+{}", self.basis, self.reconstruction.name())?;
+        match self.subpoints {
+            1 => Ok(()),
+            n => write!(f, "{n}"),
+        }
     }
 }

@@ -149,7 +149,7 @@ fn product<T: Scalar, const D: usize, const W: usize>(
 
 /// Counts `k` up in base `width`; false after the last combination.
 #[inline(always)]
-fn advance<const D: usize>(k: &mut [usize; D], width: usize) -> bool {
+pub(crate) fn advance<const D: usize>(k: &mut [usize; D], width: usize) -> bool {
     for digit in k.iter_mut() {
         *digit += 1;
         if *digit < width {

@@ -73,6 +73,12 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
         built.particle_count(),
         fields.join(", ")
     ));
+    if method.subpoints > 1 {
+        lines.push(format!(
+            "  force         at {} sub-points of each particle",
+            method.subpoints
+        ));
+    }
     lines.push(format!(
         "  DOFs          {}, {unknowns} velocity {} each",
         built.dof_count(),

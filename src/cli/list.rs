@@ -20,7 +20,7 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
         &[
             (
                 "shepard",
-                "the particles themselves are the quadrature points: plain MPM",
+                "the particles themselves are the quadrature points: plain MPM; with dual-domain also subpoints = 2 to 128 in each",
             ),
             (
                 "taylor",
@@ -99,7 +99,7 @@ pub(super) fn list() -> String {
     lines.extend(Scene::builtin_names().map(|name| format!("  {name}")));
     let methods: Vec<_> = Method::ALL.iter().map(Method::to_string).collect();
     lines.push(format!(
-        "methods of a study (--methods)\n  {}\n",
+        "methods of a study (--methods)\n  {}; dual-domain+shepardS with S = 2 to 128 sub-points\n",
         methods.join(", ")
     ));
     lines.join("\n")

@@ -72,7 +72,8 @@ struct Shared {
 /// Flags of a study.
 #[derive(Args, Debug)]
 struct StudyFlags {
-    /// Methods: all, or a list of basis+reconstruction (linear+taylor,bspline3+spline).
+    /// Methods: all, or a list of basis+reconstruction (linear+taylor,bspline3+spline); dual-domain+shepard4 has 4 sub-points
+    /// in each particle.
     #[arg(long, default_value = "all", global = true)]
     methods: String,
     /// Numbers of cells.

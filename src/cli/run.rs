@@ -69,10 +69,14 @@ fn summary_text(outcome: &Outcome) -> String {
     } = &outcome.summary;
     let mut lines = vec![title.clone()];
     lines.push(format!(
-        "  method        {} (degree {}) + {}, {} velocity mass, {} strain, {}{}",
+        "  method        {} (degree {}) + {}{}, {} velocity mass, {} strain, {}{}",
         method.basis,
         method.degree,
         method.reconstruction,
+        match method.subpoints {
+            1 => String::new(),
+            n => format!(" at {n} sub-points of each particle"),
+        },
         method.velocity_mass,
         method.strain,
         method.scalar,

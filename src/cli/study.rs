@@ -3,6 +3,7 @@
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::output::Folder;
+use materialpoint::reconstruction::SubPoints;
 use materialpoint::scene::Scene;
 use materialpoint::study::{Plan, Row, Study, recommendation, study, write_files};
 use serde_json::json;
@@ -101,7 +102,7 @@ fn methods(scene: &Scene, list: &str) -> Result<Vec<Method>, Failure> {
     }
 }
 
-/// Any pair of a known basis and a known reconstruction.
+/// Any pair of a known basis and a known reconstruction, or dual domain with sub-points.
 fn method(name: &str) -> Result<Method, Failure> {
     let bases = [Basis::Linear, Basis::DualDomain]
         .into_iter()
@@ -114,11 +115,13 @@ fn method(name: &str) -> Result<Method, Failure> {
     ];
     bases
         .flat_map(|basis| kinds.map(|kind| Method::new(basis, kind)))
+        .chain((2..=SubPoints::MOST).map(Method::sub_points))
         .find(|method| method.to_string() == name)
         .ok_or_else(|| {
             Failure::Input(format!(
                 "--methods: there is no method {name:?}; write all, or basis+reconstruction with linear, dual-domain, \
-                 bspline (degree 2), bspline1 or bspline3 and shepard, taylor, relaxed-taylor or spline"
+                 bspline (degree 2), bspline1 or bspline3 and shepard, taylor, relaxed-taylor or spline; \
+                 dual-domain+shepard4 has 4 sub-points in each particle, 2 to 128 are possible"
             ))
         })
 }

@@ -144,6 +144,17 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         })
     }
 
+    /// The point of `cell` nearest to `x`. A few roundings are kept from the upper edge, which belongs to the next cell.
+    #[inline]
+    pub fn nearest_within(&self, cell: &Cell<D>, x: &SVector<T, D>) -> SVector<T, D> {
+        SVector::from_fn(|axis, _| {
+            let i = cell[axis] as usize;
+            let (low, high) = (self.edge(axis, i), self.edge(axis, i + 1));
+            let last = high - self.doubt[axis] * self.cell_size[axis];
+            x[axis].min(last).max(low)
+        })
+    }
+
     #[inline]
     fn locate_on_axis(&self, axis: usize, x: T) -> Option<u32> {
         let (low, high) = (self.min[axis], self.max[axis]);
@@ -231,6 +242,30 @@ mod tests {
                 }
             }
             assert!(clear >= n, "the middles are clear");
+        }
+    }
+
+    #[test]
+    fn the_nearest_point_of_a_cell_is_in_the_cell() {
+        for (min, max, n) in [(0.0, 1.0, 10), (-3.0, 0.1, 7), (1e6, 1e6 + 1.0, 13)] {
+            let grid = Grid::new(vector![min], vector![max], [n]).unwrap();
+            for i in 0..n {
+                let cell = [i as u32];
+                let (low, high): (f64, f64) = (grid.edge(0, i), grid.edge(0, i + 1));
+                for x in [
+                    f64::NEG_INFINITY,
+                    low,
+                    (low + high) / 2.0,
+                    high,
+                    f64::MAX,
+                    f64::NAN,
+                ] {
+                    let near = grid.nearest_within(&cell, &vector![x]);
+                    assert_eq!(grid.locate(&near), Some(cell), "{x}");
+                    let moved = (near[0] - x.clamp(low, high)).abs();
+                    assert!(x.is_nan() || moved <= 1e-6 * (high - low), "{x}: {near}");
+                }
+            }
         }
     }
 

@@ -2,18 +2,20 @@
 //!
 //! A reconstruction streams *points with weighted values*; the weak form sums `weighted value * phi_i` or
 //! `weighted value * grad phi_i` and never knows where the points came from. Shepard streams the particles
-//! themselves, Taylor least squares and the cubic spline stream Gauss points.
+//! themselves, sub-points are spread over each particle's domain, Taylor least squares and the cubic spline stream Gauss points.
 
 mod patch;
 mod relaxed_taylor;
 mod shepard;
 mod spline;
+mod sub_points;
 mod taylor;
 
 pub use patch::{Cut, Patch};
 pub use relaxed_taylor::RelaxedTaylor;
 pub use shepard::Shepard;
 pub use spline::CubicSpline;
+pub use sub_points::SubPoints;
 pub use taylor::Taylor;
 
 use std::ops::Range;
@@ -104,9 +106,12 @@ pub struct Point<T, const D: usize> {
     note = "CubicSpline is global and exists in 1-D only; Taylor<T, D, NB> takes NB = 3, 6, 10 for D = 1, 2, 3"
 )]
 pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
-    /// Whether [`Reconstruction::integrate`] streams the particles. They move, so there the basis gives
-    /// gradients made for that ([`crate::basis::BasisFamily::for_each`]).
+    /// Whether [`Reconstruction::integrate`] streams the particles.
     const FIELDS_AT_PARTICLES: bool;
+
+    /// Whether the points of [`Reconstruction::integrate`] move with the particles. There the basis gives gradients made for
+    /// that ([`crate::basis::BasisFamily::for_each`]), elsewhere those for points that stand still.
+    const FIELDS_MOVE: bool = Self::FIELDS_AT_PARTICLES;
 
     /// Whether [`Reconstruction::integrate_conserved`] streams the particles. The mass of the DOFs is then the
     /// sum over the particles, lumped unless [`Reconstruction::PARTICLE_MATRIX`].

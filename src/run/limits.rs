@@ -20,7 +20,14 @@ pub fn mechanism(scene: &Scene, mechanism: Mechanism) -> String {
             method.velocity_mass.name()
         ),
     };
-    format!("{wave} crossing a cell: {} basis, {masses}", method.basis.name())
+    let force = match method.subpoints {
+        1 => String::new(),
+        n => format!("force at {n} sub-points of each particle, "),
+    };
+    format!(
+        "{wave} crossing a cell: {} basis, {force}{masses}",
+        method.basis.name()
+    )
 }
 
 /// What helps besides a smaller step: the end of a sentence.

@@ -19,6 +19,8 @@ pub struct MethodSummary {
     pub degree: usize,
     /// Reconstruction.
     pub reconstruction: &'static str,
+    /// Sub-points of each particle; 1 is the particle itself.
+    pub subpoints: u8,
     /// Mass behind the DOF velocities.
     pub velocity_mass: &'static str,
     /// Number of phases.
@@ -41,6 +43,7 @@ impl MethodSummary {
             basis: scene.method.basis.name(),
             degree: scene.method.basis.degree(),
             reconstruction: scene.method.reconstruction.name(),
+            subpoints: scene.method.subpoints,
             velocity_mass: scene.method.velocity_mass.name(),
             phases: scene.material.phases.count(),
             law: law.name(),

@@ -103,6 +103,7 @@ impl Scene {
         let default = Method::default_velocity_mass(method.reconstruction);
         scene.method.basis = method.basis;
         scene.method.reconstruction = method.reconstruction;
+        scene.method.subpoints = method.subpoints;
         let has_no_other = matches!(
             method.reconstruction,
             ReconstructionKind::Shepard | ReconstructionKind::RelaxedTaylor

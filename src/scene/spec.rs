@@ -55,6 +55,8 @@ pub struct Method {
     pub basis: Basis,
     /// From particle data to integrals.
     pub reconstruction: ReconstructionKind,
+    /// Sub-points of each particle's domain, 1 to 128; more than one with dual domain and Shepard only.
+    pub subpoints: u8,
     /// Mass behind the DOFs' velocities.
     pub velocity_mass: VelocityMass,
     /// Floating-point type.
@@ -62,9 +64,13 @@ pub struct Method {
 }
 
 impl Method {
-    /// Basis and reconstruction alone.
+    /// Basis, reconstruction and sub-points alone.
     pub fn method(&self) -> method::Method {
-        method::Method::new(self.basis, self.reconstruction)
+        method::Method {
+            basis: self.basis,
+            reconstruction: self.reconstruction,
+            subpoints: self.subpoints,
+        }
     }
 
     /// The velocity mass of a scene that does not name one: lumped for Shepard and constrained for relaxed Taylor, which

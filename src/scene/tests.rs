@@ -93,6 +93,10 @@ fn method_and_cells_can_be_changed_afterwards() {
     assert_eq!(with(&told, ReconstructionKind::Spline), VelocityMass::Lumped);
     assert_eq!(with(&told, ReconstructionKind::Shepard), VelocityMass::Lumped);
     assert_eq!(told.with_cells(80).grid.cells, [80]);
+    let sub_points = plain.with_method(method::Method::sub_points(4));
+    assert_eq!(sub_points.method.subpoints, 4);
+    let back = sub_points.with_method(method::Method::new(Basis::Linear, ReconstructionKind::Taylor));
+    assert_eq!(back.method.subpoints, 1);
 }
 
 #[test]
@@ -104,6 +108,17 @@ fn every_basis_and_law_can_be_named() {
         Basis::DualDomain
     );
     assert_eq!(basis(&["method.degree=3"]), Basis::BSpline { degree: 3 });
+    let sub_points = |n: u8| {
+        let told = format!("method.subpoints={n}");
+        read(&["method.basis=dual-domain", &told])
+            .unwrap()
+            .method
+            .method()
+    };
+    for n in [1, 2, 128] {
+        assert_eq!(sub_points(n), method::Method::sub_points(n));
+    }
+    assert_eq!(sub_points(4).to_string(), "dual-domain+shepard4");
     let law = |overrides: &[&str]| read(overrides).unwrap().material.law;
     let linear = "material.law={linear-elastic={youngs_modulus=5}}";
     let youngs_modulus = 5.0;

@@ -173,7 +173,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
         let add =
             |point: &Point<T, D>, weighted: SMatrix<T, D, D>, force: &mut [SVector<T, D>], first: usize| {
                 let sink = |i: usize, _, gradient| force[i - first] -= weighted * gradient;
-                if R::FIELDS_AT_PARTICLES {
+                if R::FIELDS_MOVE {
                     basis.for_each(cloud.grid, &point.cell, &point.position, sink);
                 } else {
                     basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, sink);

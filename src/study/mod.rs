@@ -34,6 +34,8 @@ pub struct Row {
     pub degree: usize,
     /// Reconstruction.
     pub reconstruction: &'static str,
+    /// Sub-points of each particle; 1 is the particle itself.
+    pub subpoints: u8,
     /// Number of cells.
     pub cells: usize,
     /// Number of particles.
@@ -161,6 +163,7 @@ fn one(
         basis: method.basis.name(),
         degree: method.basis.degree(),
         reconstruction: method.reconstruction.name(),
+        subpoints: method.subpoints,
         cells,
         particles: 0,
         errors: BTreeMap::new(),

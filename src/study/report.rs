@@ -160,12 +160,15 @@ fn curve(method: Method, point: CurvePoint) -> Curve {
         label: method.literature_name(),
         family: match method.basis {
             Basis::Linear => 0,
+            // A colour of their own.
+            Basis::DualDomain if method.subpoints > 1 => 4,
             Basis::DualDomain => 1,
             Basis::BSpline { degree: 2 } => 2,
             Basis::BSpline { degree } => 2 + degree,
         },
         variant: match method.reconstruction {
-            ReconstructionKind::Shepard => 0,
+            // 2, 4, 8, ... sub-points take the four lines in turn.
+            ReconstructionKind::Shepard => method.subpoints.checked_ilog2().unwrap_or(0) as usize,
             ReconstructionKind::Taylor => 1,
             ReconstructionKind::Spline => 2,
             ReconstructionKind::RelaxedTaylor => 3,
@@ -176,9 +179,16 @@ fn curve(method: Method, point: CurvePoint) -> Curve {
 
 /// The rows as a table of text; a figure that does not exist is an empty field.
 fn records(rows: &[Row], words: &Words) -> Records {
-    let mut header: Vec<String> = ["basis", "degree", "reconstruction", "cells", "particles"]
-        .map(str::to_owned)
-        .to_vec();
+    let mut header: Vec<String> = [
+        "basis",
+        "degree",
+        "reconstruction",
+        "subpoints",
+        "cells",
+        "particles",
+    ]
+    .map(str::to_owned)
+    .to_vec();
     for field in words.fields {
         header.extend(["rms", "relative_l2", "max", "order"].map(|figure| format!("{field}_{figure}")));
     }
@@ -202,6 +212,7 @@ fn record(row: &Row, words: &Words) -> Vec<String> {
         row.basis.to_owned(),
         row.degree.to_string(),
         row.reconstruction.to_owned(),
+        row.subpoints.to_string(),
         row.cells.to_string(),
         row.particles.to_string(),
     ];

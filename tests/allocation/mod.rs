@@ -49,7 +49,7 @@ impl MethodVisitor<f64> for LargeBar {
 #[test]
 fn no_two_phase_step_after_the_first_allocates() {
     let (soil, law) = table_6(1e-4);
-    for method in Method::NINE {
+    for method in Method::NINE.into_iter().chain([Method::sub_points(4)]) {
         for mass in [
             VelocityMass::Consistent,
             VelocityMass::Constrained,
@@ -82,7 +82,7 @@ fn no_step_after_the_first_allocates() {
     let forcing = ends
         .into_iter()
         .fold(Forcing::none(), |f, end| f.with_face(end, FaceCondition::fixed()));
-    for method in Method::ALL {
+    for method in Method::ALL.into_iter().chain([Method::sub_points(4)]) {
         for mass in [
             VelocityMass::Consistent,
             VelocityMass::Constrained,

@@ -59,6 +59,7 @@ fn run_prints_one_json_object_and_nothing_else() {
         "basis",
         "degree",
         "reconstruction",
+        "subpoints",
         "velocity_mass",
         "phases",
         "law",
@@ -113,6 +114,7 @@ fn the_default_command_compares_all_methods_and_draws_them() {
         for key in [
             "basis",
             "reconstruction",
+            "subpoints",
             "cells",
             "errors",
             "orders",
@@ -264,6 +266,52 @@ fn a_study_of_two_phases_compares_the_nine_methods_that_know_them() {
 }
 
 #[test]
+fn sub_points_are_asked_for_in_a_study_and_named_in_every_report() {
+    let methods = ["--methods", "dual-domain+shepard,dual-domain+shepard4"];
+    let study = ["study", "vibrating-bar-large", "--cells", "10"];
+    let (output, folder) = materialpoint("sub-points", &[&study[..], &methods, &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let rows: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for (row, expected) in rows["rows"].as_array().unwrap().iter().zip([1, 4]) {
+        assert_eq!(row["reconstruction"], "shepard");
+        assert_eq!(row["subpoints"], expected);
+    }
+    let csv = std::fs::read_to_string(folder.join("study.csv")).unwrap();
+    assert!(csv.contains("\ndual-domain,1,shepard,4,10,80,"), "{csv}");
+    let (output, _) = materialpoint("sub-points-table", &[&study[..], &methods].concat());
+    let table = text(&output.stdout);
+    assert!(table.contains("DDMPM + 4 sub-points"), "{table}");
+    let set = [
+        "method.basis=dual-domain",
+        "method.reconstruction=shepard",
+        "method.subpoints=4",
+    ];
+    let set = set.map(|key| ["--set", key]).concat();
+    for command in ["run", "check"] {
+        let arguments = [&[command, "vibrating-bar-large"][..], &set].concat();
+        let (output, _) = materialpoint(&format!("sub-points-{command}"), &arguments);
+        let report = text(&output.stdout);
+        assert!(report.contains("at 4 sub-points of each particle"), "{report}");
+        let (output, _) = materialpoint(
+            &format!("sub-points-{command}-json"),
+            &[&arguments[..], &["--json"]].concat(),
+        );
+        let object: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(object["method"]["subpoints"], 4);
+        assert_eq!(object["method"]["reconstruction"], "shepard");
+    }
+    for name in [
+        "dual-domain+shepard129",
+        "dual-domain+shepard0",
+        "linear+shepard4",
+    ] {
+        let arguments = [&study[..], &["--methods", name]].concat();
+        let (output, _) = materialpoint("sub-points-refused", &arguments);
+        assert_refused(&output, 2, &[name, "2 to 128"]);
+    }
+}
+
+#[test]
 fn list_names_everything_a_scene_can_ask_for() {
     let (output, _) = materialpoint("list", &["list"]);
     let list = text(&output.stdout);
@@ -272,6 +320,7 @@ fn list_names_everything_a_scene_can_ask_for() {
         "dual-domain",
         "bspline",
         "shepard",
+        "subpoints = 2 to 128",
         "taylor",
         "spline",
         "linear-elastic",

@@ -1,7 +1,7 @@
 //! The critical time step: the eigenvalue estimate against the running scheme.
 //!
 //! The small bar with a tiny amplitude (no particle crosses), 20 cells, 12 particles per cell, 3000 steps: at 0.97 of the
-//! estimate the energy stays below twice the initial, at 1.05 of it the run blows up or leaves the grid. All methods.
+//! estimate the energy stays below twice the initial, at 1.05 of it the run blows up or leaves the grid. All methods, and sub-points.
 
 use super::*;
 use materialpoint::run::critical_step;
@@ -20,7 +20,7 @@ fn scene(method: Method, step: f64) -> Scene {
 
 #[test]
 fn the_estimate_separates_stable_from_unstable_runs() {
-    for method in Method::ALL {
+    for method in Method::ALL.into_iter().chain([Method::sub_points(4)]) {
         let critical = critical_step(&scene(method, 1e-7)).unwrap().unwrap().step;
         let highest = |share: f64| match run(&scene(method, share * critical), None, &mut |_| {}) {
             Ok(outcome) => outcome.summary.energy.highest_ratio.unwrap(),

@@ -8,6 +8,7 @@ mod large_bar;
 mod precision;
 mod relaxed;
 mod small_bar;
+mod sub_points;
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::run::{Summary, run};

@@ -83,7 +83,7 @@ fn the_smooth_run_keeps_its_energy_where_the_published_method_gains() {
 #[derive(Clone, Copy)]
 struct Frozen<S>(std::marker::PhantomData<S>);
 
-impl<S: Copy + Default> materialpoint::law::ConstitutiveLaw<f64, 1> for Frozen<S> {
+impl<S: Copy + Default + Send + Sync> materialpoint::law::ConstitutiveLaw<f64, 1> for Frozen<S> {
     type State = S;
 
     fn large_strain(&self) -> bool {

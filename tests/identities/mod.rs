@@ -15,6 +15,7 @@ mod layout;
 mod reproduction;
 mod shrinking;
 mod spline;
+mod sub_points;
 mod taylor_functions;
 
 use proptest::test_runner::{Config, RngSeed};

@@ -1,8 +1,9 @@
 //! `[method]`
 
+use super::Section;
 use super::material::PhaseCount;
-use super::{Item, Section};
 use crate::mass::VelocityMass;
+use crate::reconstruction::SubPoints;
 use crate::scene::{Basis, Method, ReconstructionKind, ScalarKind, SceneError};
 
 const KEYS: [&str; 6] = [
@@ -26,12 +27,10 @@ pub(super) fn read(section: Section<'_>, dimension: usize, phases: PhaseCount) -
     let section = section.allow(&KEYS, &[])?;
     let basis = basis(&section)?;
     let reconstruction = reconstruction(&section, dimension, phases)?;
-    if let Some(item) = section.optional("subpoints") {
-        check_subpoints(&item, basis, reconstruction)?;
-    }
     Ok(Method {
         basis,
         reconstruction,
+        subpoints: subpoints(&section, basis, reconstruction)?,
         velocity_mass: velocity_mass(&section, reconstruction)?,
         scalar: match section.optional("scalar") {
             Some(item) => item.choice(&[("f64", ScalarKind::F64), ("f32", ScalarKind::F32)], &[])?,
@@ -82,21 +81,22 @@ fn reconstruction(
     Ok(reconstruction)
 }
 
-/// One sub-point is the particle itself, which is what this version does.
-fn check_subpoints(
-    item: &Item<'_>,
+/// One sub-point is the particle itself.
+fn subpoints(
+    section: &Section<'_>,
     basis: Basis,
     reconstruction: ReconstructionKind,
-) -> Result<(), SceneError> {
+) -> Result<u8, SceneError> {
+    let Some(item) = section.optional("subpoints") else {
+        return Ok(1);
+    };
     if (basis, reconstruction) != (Basis::DualDomain, ReconstructionKind::Shepard) {
         return Err(item.conflict(
             "it goes with method.basis = \"dual-domain\" and method.reconstruction = \"shepard\" only; leave it out",
         ));
     }
-    match item.count(1, u64::MAX)? {
-        1 => Ok(()),
-        _ => Err(item.not_in_this_version("1")),
-    }
+    let count = item.count(1, SubPoints::MOST.into())?;
+    u8::try_from(count).map_err(|_| item.not_allowed("a smaller number"))
 }
 
 fn velocity_mass(

@@ -102,7 +102,7 @@ where
                     whole[i] -= total * gradient;
                     liquid[i] -= gradient * pressure;
                 };
-                if R::FIELDS_AT_PARTICLES {
+                if R::FIELDS_MOVE {
                     basis.for_each(cloud.grid, &point.cell, &point.position, add);
                 } else {
                     basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);

@@ -19,6 +19,8 @@ pub enum Measure {
     OccupiedCells,
     /// In each cell, the volume of its particles.
     Particles,
+    /// In all cells together, the volume of all particles: the stream of a particle may reach into other cells.
+    AllParticles,
 }
 
 /// What a reconstruction claims *on the particles given to the check*.

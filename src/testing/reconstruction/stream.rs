@@ -133,30 +133,40 @@ fn total_weights<T: Scalar, const D: usize>(
     weights: &[Streamed<T, D>],
     measure: Measure,
 ) -> Result<(), Failure> {
+    let volume = |particles: &[u32]| {
+        let volumes = particles.iter().map(|&p| cloud.volumes[p as usize]);
+        volumes.fold(T::zero(), |sum, v| sum + v)
+    };
+    if measure == Measure::AllParticles {
+        let expected = cloud.volumes.iter().fold(T::zero(), |sum, &v| sum + v);
+        let error = relative_error(cloud) + T::count(weights.len()) * T::default_epsilon();
+        return weigh(weights.iter(), expected, error, || Place::Everywhere);
+    }
     let error = relative_error(cloud);
-    for number in 0..cloud.grid.cell_count() {
+    (0..cloud.grid.cell_count()).try_for_each(|number| {
         let cell = cloud.grid.cell(number);
         let particles = cloud.bins.particles_in(number);
         let expected = match measure {
-            Measure::OccupiedCells if particles.is_empty() => T::zero(),
-            Measure::OccupiedCells => cloud.grid.cell_volume(),
-            Measure::Particles => particles
-                .iter()
-                .fold(T::zero(), |v, &p| v + cloud.volumes[p as usize]),
+            Measure::OccupiedCells if !particles.is_empty() => cloud.grid.cell_volume(),
+            Measure::OccupiedCells => T::zero(),
+            Measure::Particles | Measure::AllParticles => volume(particles),
         };
         let here = weights.iter().filter(|point| point.cell == cell);
-        let (sum, size) = here.fold((T::zero(), expected), |(sum, size), point| {
-            (sum + point.weighted, size + point.weighted.abs())
-        });
-        near(
-            Property::Weights,
-            || Place::cell(&cell),
-            expected,
-            sum,
-            size * error,
-        )?;
-    }
-    Ok(())
+        weigh(here, expected, error, || Place::cell(&cell))
+    })
+}
+
+/// The sum of the weights of `points`, up to `error` of their sizes.
+fn weigh<'a, T: Scalar, const D: usize>(
+    points: impl Iterator<Item = &'a Streamed<T, D>>,
+    expected: T,
+    error: T,
+    place: impl FnOnce() -> Place,
+) -> Result<(), Failure> {
+    let (sum, size) = points.fold((T::zero(), expected), |(sum, size), point| {
+        (sum + point.weighted, size + point.weighted.abs())
+    });
+    near(Property::Weights, place, expected, sum, size * error)
 }
 
 /// `stream(2 f - 3) = 2 stream(f) - 3 stream(1)`.

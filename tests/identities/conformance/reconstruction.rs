@@ -3,7 +3,7 @@
 use materialpoint::field::Field;
 use materialpoint::grid::Grid;
 use materialpoint::reconstruction::{
-    Cloud, CubicSpline, Point, Reconstruction, RelaxedTaylor, Shepard, Taylor,
+    Cloud, CubicSpline, Point, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor,
 };
 use materialpoint::scalar::Scalar;
 use materialpoint::testing::{Failure, Measure, Property, ReconstructionClaims, check_reconstruction};
@@ -68,6 +68,14 @@ const TAYLOR: ReconstructionClaims = ReconstructionClaims {
     integrates: Some(2),
 };
 
+/// The outermost domains reach into the neighbour's cell or out of the grid, so that no cell's own integral is exact.
+const SUB_POINTS: ReconstructionClaims = ReconstructionClaims {
+    conserves_amounts: true,
+    measure: Measure::AllParticles,
+    reproduces: 0,
+    integrates: None,
+};
+
 /// A global spline takes its particles as they come, whatever cell they are in.
 const SPLINE: ReconstructionClaims = ReconstructionClaims {
     conserves_amounts: false,
@@ -79,6 +87,11 @@ const SPLINE: ReconstructionClaims = ReconstructionClaims {
 fn ours<T: Scalar>() -> Result<(), Failure> {
     check::<T, 1, _>(Shepard, 4, SHEPARD)?;
     check::<T, 2, _>(Shepard, 2, SHEPARD)?;
+    for sub_points in [2, 5] {
+        let sub_points = SubPoints::new(sub_points).unwrap();
+        check::<T, 1, _>(sub_points, 4, SUB_POINTS)?;
+        check::<T, 2, _>(sub_points, 2, SUB_POINTS)?;
+    }
     check::<T, 1, _>(Taylor::<T, 1, 3>::new(), 4, TAYLOR)?;
     check::<T, 1, _>(Taylor::<T, 1, 3>::with_gauss_points(3), 4, TAYLOR)?;
     check::<T, 2, _>(Taylor::<T, 2, 6>::new(), 2, TAYLOR)?;
@@ -119,6 +132,28 @@ fn shepard_integrates_nothing_where_particles_do_not_fill_their_cells() {
     };
     assert_eq!(verdict(unfilled), Ok(()));
     assert_eq!(verdict(SHEPARD).unwrap_err().property, Property::Integrates(0));
+}
+
+/// What a cell's particles hold is not what its sub-points bring, and the sum over all cells is.
+#[test]
+fn the_weights_of_sub_points_sum_to_the_volume_in_all_cells_only() {
+    let sub_points = SubPoints::new(4).unwrap();
+    let each = ReconstructionClaims {
+        measure: Measure::Particles,
+        ..SUB_POINTS
+    };
+    let failure = check::<f64, 1, _>(sub_points, 4, each).unwrap_err();
+    assert_eq!(failure.property, Property::Weights);
+    let heavy = Faulty::<false> {
+        mistake: Mistake::Weights,
+        smallest: f64::MAX,
+    };
+    let all = ReconstructionClaims {
+        measure: Measure::AllParticles,
+        ..SHEPARD
+    };
+    let failure = check::<f64, 1, _>(heavy, 3, all).unwrap_err();
+    assert_eq!(failure.property, Property::Weights);
 }
 
 #[test]
