@@ -61,9 +61,9 @@ struct Shared {
     /// Print the summary as JSON on standard output, and nothing else there.
     #[arg(long, global = true)]
     json: bool,
-    /// Threads to use, at least 1; this version steps on one, whatever is asked.
-    #[arg(long, value_name = "N", default_value_t = 1, global = true, value_parser = clap::value_parser!(u32).range(1..))]
-    threads: u32,
+    /// Threads to use, at least 1; all processors unless told otherwise. Results are the same to the bit.
+    #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u32).range(1..))]
+    threads: Option<u32>,
     /// No progress bar.
     #[arg(long, global = true)]
     quiet: bool,
@@ -91,6 +91,7 @@ pub(crate) fn execute(arguments: &Arguments) -> Result<(), Failure> {
         shared,
         study,
     } = arguments;
+    use_threads(shared.threads)?;
     match command {
         None => study::default_study(shared, study),
         Some(Command::Study { scene }) => study::study_scene(scene, shared, study),
@@ -98,4 +99,12 @@ pub(crate) fn execute(arguments: &Arguments) -> Result<(), Failure> {
         Some(Command::Check { scene }) => check::check_scene(scene, shared),
         Some(Command::List) => print::print(&list::list()),
     }
+}
+
+/// Sets the number of threads that share the work of a step; zero is rayon's word for all processors.
+fn use_threads(threads: Option<u32>) -> Result<(), Failure> {
+    let count = threads.unwrap_or(0) as usize;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count);
+    pool.build_global()
+        .map_err(|error| Failure::Input(format!("--threads {count}: {error}")))
 }

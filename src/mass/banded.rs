@@ -1,5 +1,7 @@
 //! Symmetric banded matrices.
 
+mod narrow;
+
 use nalgebra::SVector;
 
 use crate::scalar::Scalar;
@@ -96,48 +98,71 @@ impl<T: Scalar> Banded<T> {
 
     /// Sum of all entries of the symmetric matrix.
     pub fn total(&self) -> T {
-        let width = self.half_band + 1;
-        let (mut lower, mut diagonal) = (T::zero(), T::zero());
-        for row in self.rows.chunks_exact(width) {
-            for &entry in &row[..width - 1] {
-                lower += entry;
+        match self.half_band {
+            1 => total::<T, 2>(&self.rows),
+            2 => total::<T, 3>(&self.rows),
+            3 => total::<T, 4>(&self.rows),
+            half_band => {
+                let rows = self.rows.chunks_exact(half_band + 1);
+                rows.fold(T::zero(), |sum, row| {
+                    let lower = row[..half_band].iter().fold(T::zero(), |s, &x| s + x);
+                    sum + lower + lower + row[half_band]
+                })
             }
-            diagonal += row[width - 1];
         }
-        diagonal + lower + lower
     }
 
-    /// Factorises in place. A pivot that vanishes against the matrix's largest entry marks a DOF that no
-    /// mass reaches: it is cut off, and [`Banded::solve`] returns zero for it.
+    /// Factorises in place; the diagonal then holds the inverse pivots. A pivot that vanishes against the matrix's largest
+    /// diagonal entry marks a DOF that no mass reaches: it is cut off, and [`Banded::solve`] returns zero for it.
     pub fn factorise(&mut self) {
-        let largest = self.rows.iter().fold(T::zero(), |m, &r| m.max(r.abs()));
+        let diagonal = self.rows.chunks_exact(self.half_band + 1);
+        let largest = diagonal.fold(T::zero(), |m, row| m.max(row[self.half_band].abs()));
         let negligible = largest * T::default_epsilon() * T::default_epsilon();
+        match self.half_band {
+            1 => narrow::factorise::<T, 2>(&mut self.rows, negligible),
+            2 => narrow::factorise::<T, 3>(&mut self.rows, negligible),
+            3 => narrow::factorise::<T, 4>(&mut self.rows, negligible),
+            _ => self.factorise_wide(negligible),
+        }
+    }
+
+    fn factorise_wide(&mut self, negligible: T) {
         for i in 0..self.order {
             let first = i.saturating_sub(self.half_band);
-            for j in first..=i {
+            // Row i of L D until its pivots are known.
+            for j in first..i {
                 let low = first.max(j.saturating_sub(self.half_band));
                 let mut sum = self.rows[self.at(i, j)];
                 for k in low..j {
-                    sum -= self.rows[self.at(i, k)] * self.rows[self.at(j, k)] * self.rows[self.at(k, k)];
+                    sum -= self.rows[self.at(i, k)] * self.rows[self.at(j, k)];
                 }
                 let at = self.at(i, j);
-                if j < i {
-                    let pivot = self.rows[self.at(j, j)];
-                    // A cut-off DOF has a pivot of zero and passes nothing on.
-                    self.rows[at] = if pivot == T::zero() {
-                        T::zero()
-                    } else {
-                        sum / pivot
-                    };
-                } else {
-                    self.rows[at] = if sum.abs() <= negligible { T::zero() } else { sum };
-                }
+                self.rows[at] = sum;
             }
+            let mut pivot = self.rows[self.at(i, i)];
+            for j in first..i {
+                let at = self.at(i, j);
+                // A cut-off DOF has an inverse pivot of zero and passes nothing on.
+                let entry = self.rows[at] * self.rows[self.at(j, j)];
+                pivot -= self.rows[at] * entry;
+                self.rows[at] = entry;
+            }
+            let at = self.at(i, i);
+            self.rows[at] = inverse(pivot, negligible);
         }
     }
 
     /// Solves for component `axis` with the factorised matrix.
     pub fn solve<const D: usize>(&self, x: &mut [SVector<T, D>], axis: usize) {
+        match self.half_band {
+            1 => narrow::solve::<T, D, 2>(&self.rows, x, axis),
+            2 => narrow::solve::<T, D, 3>(&self.rows, x, axis),
+            3 => narrow::solve::<T, D, 4>(&self.rows, x, axis),
+            _ => self.solve_wide(x, axis),
+        }
+    }
+
+    fn solve_wide<const D: usize>(&self, x: &mut [SVector<T, D>], axis: usize) {
         let order = self.order.min(x.len());
         for i in 0..order {
             for j in i.saturating_sub(self.half_band)..i {
@@ -146,12 +171,7 @@ impl<T: Scalar> Banded<T> {
             }
         }
         for i in (0..order).rev() {
-            let pivot = self.rows[self.at(i, i)];
-            x[i][axis] = if pivot == T::zero() {
-                T::zero()
-            } else {
-                x[i][axis] / pivot
-            };
+            x[i][axis] *= self.rows[self.at(i, i)];
             for k in i + 1..(i + self.half_band + 1).min(order) {
                 let above = x[k][axis] * self.rows[self.at(k, i)];
                 x[i][axis] -= above;
@@ -172,6 +192,29 @@ impl<T: Scalar> Banded<T> {
             }
         }
         y
+    }
+}
+
+/// Sum of all entries, the columns of the band side by side: one chain of additions would wait for itself.
+fn total<T: Scalar, const W: usize>(rows: &[T]) -> T {
+    let (rows, _) = rows.as_chunks::<W>();
+    let mut sums = [T::zero(); W];
+    for row in rows {
+        for k in 0..W {
+            sums[k] += row[k];
+        }
+    }
+    let lower = sums[..W - 1].iter().fold(T::zero(), |s, &x| s + x);
+    lower + lower + sums[W - 1]
+}
+
+/// One over a pivot, zero where it vanishes.
+#[inline(always)]
+fn inverse<T: Scalar>(pivot: T, negligible: T) -> T {
+    if pivot.abs() <= negligible {
+        T::zero()
+    } else {
+        T::one() / pivot
     }
 }
 

@@ -93,8 +93,8 @@ impl<T: Scalar, const D: usize, S: Copy, Q> Movable<'_, T, D, S, Q> {
         law.update(increment, self.stress, self.state);
         if law.large_strain() {
             let volume = *self.volume * determinant(&(SMatrix::identity() + increment));
-            // Also refuses a volume that is not a number.
-            if !(volume > T::zero() && volume.is_finite()) {
+            // Also refuses a volume that is not a number, or infinite.
+            if !(volume > T::zero() && volume - volume == T::zero()) {
                 return Err(volume);
             }
             *self.volume = volume;

@@ -2,9 +2,11 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::cell_sums::CellSums;
 use super::spans::{Spans, share};
 use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
+use crate::field::Pair;
 use crate::law::ConstitutiveLaw;
 use crate::parallel::{CELLS, PARTICLES, Windows, add_up, each_span};
 use crate::phase::Phase;
@@ -60,6 +62,11 @@ where
         )| {
             let ((first, mass), (_, force)) = (mass.one(), force.one());
             let force = &mut force[..mass.len()];
+            let mut sums = CellSums::new(basis, grid);
+            let mut sink = |i: usize, Pair(m, f)| {
+                mass[i - first] += m;
+                force[i - first] -= f;
+            };
             let bodies = bodies.0.iter().zip(bodies.1);
             let stresses = stresses.0.iter().zip(stresses.1);
             let places = positions.iter().zip(cells);
@@ -69,11 +76,10 @@ where
                 } else {
                     *stress * volume
                 };
-                basis.for_each(grid, cell, x, |i, phi, gradient| {
-                    mass[i - first] += m * phi;
-                    force[i - first] -= weighted * gradient;
-                });
+                let part = |phi, gradient| Pair(m * phi, weighted * gradient);
+                sums.add(cell, x, part, &mut sink);
             }
+            sums.flush(&mut sink);
         });
         add_up(spans, scalars, &mut self.dofs.mass, 1);
         add_up(spans, vectors, &mut self.dofs.force, 1);
@@ -121,9 +127,12 @@ where
         );
         each_span(parallel, span, work, &|_, (positions, cells, masses, mass)| {
             let (first, mass) = mass.one();
+            let mut sums = CellSums::new(basis, grid);
+            let mut sink = |i: usize, m| mass[i - first] += m;
             for ((x, cell), &m) in positions.iter().zip(cells).zip(masses) {
-                basis.for_each(grid, cell, x, |i, phi, _| mass[i - first] += m * phi);
+                sums.add(cell, x, |phi, _| m * phi, &mut sink);
             }
+            sums.flush(&mut sink);
         });
         add_up(spans, scalars, &mut self.dofs.mass, 1);
     }

@@ -15,6 +15,7 @@
 
 mod acceleration;
 mod advance;
+mod cell_sums;
 mod critical;
 mod diagnostics;
 mod forces;

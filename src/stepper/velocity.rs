@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use super::acceleration::Walls;
+use super::cell_sums::CellSums;
 use super::diagnostics::Sums;
 use super::matrix::Unknown;
 use super::spans::{Spans, share};
@@ -109,6 +110,8 @@ where
         )| {
             let mut sums = Sums::zero();
             let (first, momentum) = momentum.one();
+            let mut momenta = CellSums::new(basis, grid);
+            let mut sink = |i: usize, q| momentum[i - first] += q;
             let bodies = velocities.iter_mut().zip(masses);
             for ((x, cell), (velocity, &mass)) in positions.iter().zip(cells).zip(bodies) {
                 let mut a = SVector::zeros();
@@ -116,8 +119,9 @@ where
                 *velocity += a * dt;
                 let q = *velocity * mass;
                 sums.add(q);
-                basis.for_each(grid, cell, x, |i, phi, _| momentum[i - first] += q * phi);
+                momenta.add(cell, x, |phi, _| q * phi, &mut sink);
             }
+            momenta.flush(&mut sink);
             found.set(sums);
         });
         add_up(spans, vectors, &mut self.dofs.velocity, 1);

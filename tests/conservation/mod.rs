@@ -1,6 +1,7 @@
 //! Mass and momentum before and after the mapping, largest error over all steps (journal Tables 3, 5 and 7).
 
 mod dimensions;
+mod threads;
 
 use crate::convergence::*;
 use materialpoint::method::Method;

@@ -102,7 +102,7 @@ impl<S: Copy + Default + Send + Sync> materialpoint::law::ConstitutiveLaw<f64, 1
 }
 
 /// Whether one step moves rough stresses towards their fit.
-fn moves_the_stress<S: Copy + Default>() -> bool {
+fn moves_the_stress<S: Copy + Default + Send + Sync>() -> bool {
     use materialpoint::basis::BSpline;
     use materialpoint::grid::Grid;
     use materialpoint::mass::VelocityMass;

@@ -1,0 +1,62 @@
+//! Factors of matrices with few bands, `W` numbers a row: the rows that matter stay in registers.
+
+use nalgebra::SVector;
+
+use super::inverse;
+use crate::scalar::Scalar;
+
+/// `L D L^T` in place, inverse pivots on the diagonal.
+pub(super) fn factorise<T: Scalar, const W: usize>(rows: &mut [T], negligible: T) {
+    let (rows, _) = rows.as_chunks_mut::<W>();
+    // The W - 1 rows before, the latest last; the last entry of each is its inverse pivot.
+    let mut before = [[T::zero(); W]; W];
+    for row in rows {
+        // L D, left to right; column k belongs to the row `before[k + 1]`.
+        let mut entries = *row;
+        for k in 0..W - 1 {
+            for m in 0..k {
+                entries[k] -= entries[m] * before[k + 1][W - 1 - (k - m)];
+            }
+        }
+        let mut pivot = row[W - 1];
+        for k in 0..W - 1 {
+            row[k] = entries[k] * before[k + 1][W - 1];
+            pivot -= entries[k] * row[k];
+        }
+        row[W - 1] = inverse(pivot, negligible);
+        for k in 1..W {
+            before[k - 1] = before[k];
+        }
+        before[W - 1] = *row;
+    }
+}
+
+/// Solves for component `axis`.
+pub(super) fn solve<T: Scalar, const D: usize, const W: usize>(
+    rows: &[T],
+    x: &mut [SVector<T, D>],
+    axis: usize,
+) {
+    let (rows, _) = rows.as_chunks::<W>();
+    let mut before = [T::zero(); W];
+    for (row, x) in rows.iter().zip(x.iter_mut()) {
+        let mut value = x[axis];
+        for k in 0..W - 1 {
+            value -= row[k] * before[k + 1];
+        }
+        x[axis] = value;
+        for k in 1..W {
+            before[k - 1] = before[k];
+        }
+        before[W - 1] = value;
+    }
+    // What the rows already solved take from the next ones, nearest first.
+    let mut taken = [T::zero(); W];
+    for (row, x) in rows.iter().zip(x.iter_mut()).rev() {
+        let value = x[axis] * row[W - 1] - taken[0];
+        x[axis] = value;
+        for k in 0..W - 1 {
+            taken[k] = taken[k + 1] + row[W - 2 - k] * value;
+        }
+    }
+}

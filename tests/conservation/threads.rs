@@ -1,0 +1,104 @@
+//! Any number of threads gives the bits of one.
+//!
+//! Particles enough for many spans, in order along the bar and shuffled (then one span serves), crossing cells as they move.
+
+use materialpoint::basis::BasisFamily;
+use materialpoint::grid::{Face, Grid, Side};
+use materialpoint::law::{Hill, Moduli};
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::{Method, MethodVisitor};
+use materialpoint::particles::{Particles, lattice};
+use materialpoint::phase::OnePhase;
+use materialpoint::reconstruction::Reconstruction;
+use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use nalgebra::vector;
+
+const CELLS: usize = 3000;
+const PER_CELL: usize = 7;
+
+#[derive(Clone, Copy)]
+struct Bar {
+    mass: VelocityMass,
+    shuffled: bool,
+}
+
+impl MethodVisitor<f64> for Bar {
+    type Output = Box<dyn Simulation<1>>;
+
+    fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
+    where
+        B: BasisFamily<f64, 1> + Send + 'static,
+        R: Reconstruction<f64, 1> + Clone + Send + 'static,
+    {
+        let grid = Grid::new(vector![0.0], vector![1.0], [CELLS]).unwrap();
+        let mut points = lattice(&grid, grid.min(), grid.max(), [PER_CELL]);
+        if self.shuffled {
+            let count = points.len();
+            // A stride that shares no factor with the count visits every point once.
+            points = (0..count).map(|p| points[p * 10_007 % count]).collect();
+        }
+        let mut particles = Particles::at_rest(&points, 2e3);
+        for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
+            v[0] = 0.8 * (std::f64::consts::PI * x[0]).sin();
+        }
+        let setup = Setup {
+            grid,
+            basis,
+            reconstruction,
+            law: Hill {
+                moduli: Moduli::uniaxial(4e4).unwrap(),
+            },
+            phase: OnePhase,
+            velocity_mass: self.mass,
+            particles,
+            surface: Vec::new(),
+        };
+        Box::new(Stepper::new(setup).unwrap())
+    }
+}
+
+/// Positions and velocities after some steps, and the error of the momentum, on so many threads.
+fn run(method: Method, bar: Bar, threads: usize) -> (Vec<u64>, f64) {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
+    pool.install(|| {
+        let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
+        let fixed = |forcing: Forcing<f64, 1>, end| forcing.with_face(end, FaceCondition::fixed());
+        let forcing = ends.into_iter().fold(Forcing::none(), fixed);
+        let mut simulation = method.dispatch(bar).unwrap();
+        for _ in 0..40 {
+            simulation.step(1e-5, &forcing).unwrap();
+        }
+        let found = simulation.diagnostics();
+        assert!(found.grid_crossings > 0);
+        let particles = simulation.particles();
+        let numbers = particles.position.iter().chain(&particles.velocity);
+        let stresses = particles.stress.iter().map(|s| s[0].to_bits());
+        let bits = numbers.map(|x| x[0].to_bits()).chain(stresses).collect();
+        (bits, found.conservation.momentum_scaled)
+    })
+}
+
+#[test]
+fn results_are_the_same_to_the_bit_on_any_number_of_threads() {
+    for method in Method::ALL {
+        for mass in [VelocityMass::Consistent, VelocityMass::Lumped] {
+            for shuffled in [false, true] {
+                let bar = Bar { mass, shuffled };
+                let (one, momentum) = run(method, bar, 1);
+                if !method.to_string().ends_with("spline") {
+                    assert!(momentum < 1e-14, "{method} {mass:?}: {momentum:e}");
+                }
+                for threads in [2, 3, 7] {
+                    let (more, _) = run(method, bar, threads);
+                    assert!(
+                        one == more,
+                        "{method} {mass:?} shuffled {shuffled}, {threads} threads"
+                    );
+                }
+            }
+        }
+    }
+}
