@@ -44,7 +44,8 @@ pub struct CurvePoint {
 /// A picture (SVG text) of a study: error against cost, both axes logarithmic, one curve a method, the legend to
 /// the right; the best points are ringed, labelled and joined by a stair.
 ///
-/// The labels bear their units in brackets. Points that are not positive and finite are left out and counted.
+/// The labels bear their units in brackets. Points that are not positive and finite (a run that
+/// stopped may be not a number) are left out and counted.
 pub fn draw_study(title: &str, x_label: &str, y_label: &str, curves: &[Curve]) -> String {
     let frame = frame(curves);
     let legend_left = frame.right() + EDGE;

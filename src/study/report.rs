@@ -140,7 +140,12 @@ fn stress_panel(method: Method, run: &Outcome, words: &Words) -> Option<FieldPan
 fn curves(rows: &[Row]) -> Vec<Curve> {
     let mut curves: Vec<(Method, Curve)> = Vec::new();
     for row in rows {
-        let Some(error) = row.stress_error() else { continue };
+        let error = match row.stress_error() {
+            Some(error) => error,
+            // Counted by the picture, not drawn.
+            None if row.stopped.is_some() => f64::NAN,
+            None => continue,
+        };
         let point = CurvePoint {
             x: row.wall_seconds,
             y: error,
@@ -237,19 +242,89 @@ fn record(row: &Row, words: &Words) -> Vec<String> {
 pub fn recommendation(study: &Study, limit: f64) -> String {
     let Words { article, .. } = Words::of(study);
     let stress = Words::of(study).stress();
-    let good = study
-        .rows
-        .iter()
-        .filter(|row| row.stress_error().is_some_and(|error| error < limit));
     let percent = limit * 100.0;
-    match good.min_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds)) {
-        Some(row) => format!(
-            "For {article} {stress} error below {percent} % the cheapest here is {} with {} cells ({:.2} %, {:.3} s).",
-            row.method.literature_name(),
-            row.cells,
-            row.stress_error().unwrap_or(f64::NAN) * 100.0,
-            row.wall_seconds
-        ),
-        None => format!("No method here has {article} {stress} error below {percent} %: take more cells."),
+    let rows = || {
+        let known = study
+            .rows
+            .iter()
+            .filter_map(|row| Some((row, row.stress_error()?)));
+        known.filter(|(row, error)| error.is_finite() && row.wall_seconds.is_finite())
+    };
+    let good = rows().filter(|(_, error)| *error < limit);
+    if let Some((row, error)) = good.min_by(|a, b| a.0.wall_seconds.total_cmp(&b.0.wall_seconds)) {
+        let what = described(row, error);
+        return format!("For {article} {stress} error below {percent} % the cheapest here is {what}.");
+    }
+    let none = format!("No method here has {article} {stress} error below {percent} %");
+    match rows().min_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((row, error)) => format!("{none}: nearest is {}; take more cells.", described(row, error)),
+        None => format!("{none}: no run has a result; look at the time step and the loads."),
+    }
+}
+
+fn described(row: &Row, error: f64) -> String {
+    let seconds = match row.wall_seconds {
+        time @ 0.1.. => format!("{time:.2} s"),
+        time @ 1e-4.. => format!("{:.2} ms", time * 1e3),
+        time => format!("{:.1} µs", time * 1e6),
+    };
+    let (method, percent) = (row.method.literature_name(), error * 100.0);
+    format!("{method} with {} cells ({percent:.2} %, {seconds})", row.cells)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::row;
+    use super::*;
+
+    fn study(rows: Vec<Row>) -> Study {
+        Study {
+            phases: 1,
+            rows,
+            drawn: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_cheapest_that_is_good_enough_is_recommended() {
+        let stopped = row(f64::NAN, None);
+        let rows = vec![
+            row(0.5, Some(2e-3)),
+            row(0.25, Some(9e-3)),
+            row(0.01, Some(0.02)),
+            stopped,
+        ];
+        let expected =
+            "For a stress error below 1 % the cheapest here is MPM with 10 cells (0.90 %, 0.25 s).";
+        assert_eq!(recommendation(&study(rows), 0.01), expected);
+    }
+
+    #[test]
+    fn where_none_is_good_enough_the_nearest_is_named() {
+        let rows = vec![
+            row(2e-3, Some(0.05)),
+            row(1e-5, Some(0.02)),
+            row(1.0, Some(f64::NAN)),
+        ];
+        let sentence = recommendation(&study(rows), 0.01);
+        assert!(
+            sentence.contains("nearest is MPM with 10 cells (2.00 %, 10.0 µs); take"),
+            "{sentence}"
+        );
+        let none = recommendation(&study(vec![row(f64::NAN, None)]), 0.01);
+        assert!(none.contains("no run has a result"), "{none}");
+    }
+
+    #[test]
+    fn a_stopped_run_is_a_point_that_the_picture_counts_and_cannot_draw() {
+        let mut stopped = row(f64::NAN, None);
+        stopped.stopped = Some("step 3".into());
+        let curves = curves(&[row(1.0, Some(0.1)), stopped, row(1.0, None)]);
+        assert_eq!(curves[0].points.len(), 2);
+        let picture = draw_study("", "t [s]", "e [-]", &curves);
+        assert!(
+            picture.contains("1 point not drawn") && picture.contains("stopped, or not"),
+            "{picture}"
+        );
     }
 }
