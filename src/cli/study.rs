@@ -19,7 +19,7 @@ const DEFAULT_CELLS: [usize; 4] = [10, 20, 40, 80];
 /// Stress error that the recommendation asks for.
 const LIMIT: f64 = 0.01;
 
-/// Shorter runs are timed again until their times sum to this (s).
+/// Shorter runs are timed again until that makes up this (s).
 const LEAST_SECONDS: f64 = 0.1;
 
 pub(super) fn default_study(shared: &Shared, flags: &StudyFlags) -> Result<(), Failure> {

@@ -30,8 +30,9 @@ pub(super) fn text(study: &Study, title: &str) -> String {
     let stopped: String = study.rows.iter().filter_map(stopped).collect();
     format!(
         "{title}\n\n{table}\n\
-         {names}: relative L2 error against the reference;\n\
-         order: of the RMS error, against the row above; time: median, step loop only; Mps/s: million particle steps per\n\
+         {names}:\n\
+         relative L2 error against the reference;\n\
+         ord: observed order of the RMS error, against the row above; time: median, step loop only; Mps/s: million particle steps per\n\
          second; mass, momentum: largest conservation error; front: no other row is both faster and more accurate (stress)\n\
          \n{stopped}"
     )
@@ -43,13 +44,13 @@ fn table(study: &Study, fields: Fields) -> Table {
     table.set_style(TableComponent::HeaderLines, '─');
     table.set_style(TableComponent::MiddleHeaderIntersections, '─');
     let header = ["method", "cells"].into_iter();
-    let header = header.chain(fields.iter().flat_map(|&(column, _)| [column, "order"]));
+    let header = header.chain(fields.iter().flat_map(|&(column, _)| [column, "ord"]));
     table.set_header(header.chain(["time [s]", "Mps/s", "crossings", "mass", "momentum", "front"]));
     for row in &study.rows {
         table.add_row(cells(row, fields));
     }
     for column in table.column_iter_mut() {
-        column.set_padding((0, 2));
+        column.set_padding((0, 1));
     }
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);

@@ -4,7 +4,7 @@ mod front;
 mod report;
 mod timing;
 
-pub use report::{recommendation, write_fields, write_files};
+pub use report::{front_in_markdown, picture, recommendation, write_fields, write_files};
 
 use std::collections::BTreeMap;
 
@@ -25,7 +25,8 @@ pub struct Plan {
     pub cells: Vec<usize>,
     /// How often each run is timed at least; the median counts.
     pub repeat: usize,
-    /// A run is timed until its times sum to this (s): the shortest ones would be noise otherwise.
+    /// A run is timed until its median time, as often as it was timed, makes up this (s), or 200 times: the shortest
+    /// ones would be noise otherwise.
     pub least_seconds: f64,
 }
 

@@ -59,6 +59,17 @@ fn spoken(name: &str) -> String {
     name.replace('_', " ")
 }
 
+/// The picture (SVG text) of a study: stress error against time, one curve a method, the front marked.
+pub fn picture(study: &Study, title: &str) -> String {
+    let stress = Words::of(study).stress();
+    draw_study(
+        &format!("{title}: {stress} error against time"),
+        "time of the step loop [s]",
+        &format!("relative L2 error of the {stress} [-]"),
+        &curves(&study.rows),
+    )
+}
+
 /// Writes `study.csv`, `study.svg` and `fields.svg`.
 ///
 /// # Errors
@@ -66,12 +77,6 @@ fn spoken(name: &str) -> String {
 pub fn write_files(study: &Study, title: &str, folder: &Folder) -> Result<Vec<PathBuf>, OutputError> {
     let words = Words::of(study);
     let stress = words.stress();
-    let picture = draw_study(
-        &format!("{title}: {stress} error against time"),
-        "time of the step loop [s]",
-        &format!("relative L2 error of the {stress} [-]"),
-        &curves(&study.rows),
-    );
     let panels: Vec<_> = study
         .drawn
         .iter()
@@ -88,7 +93,7 @@ pub fn write_files(study: &Study, title: &str, folder: &Folder) -> Result<Vec<Pa
     );
     Ok(vec![
         records(&study.rows, words).write_csv(folder, "study.csv")?,
-        folder.write("study.svg", &picture)?,
+        folder.write("study.svg", &picture(study, title))?,
         folder.write("fields.svg", &fields)?,
     ])
 }
@@ -263,13 +268,48 @@ pub fn recommendation(study: &Study, limit: f64) -> String {
 }
 
 fn described(row: &Row, error: f64) -> String {
-    let seconds = match row.wall_seconds {
-        time @ 0.1.. => format!("{time:.2} s"),
-        time @ 1e-4.. => format!("{:.2} ms", time * 1e3),
-        time => format!("{:.1} µs", time * 1e6),
-    };
+    let seconds = spoken_time(row.wall_seconds);
     let (method, percent) = (row.method.literature_name(), error * 100.0);
     format!("{method} with {} cells ({percent:.2} %, {seconds})", row.cells)
+}
+
+/// A time (s) with its unit, three digits or so.
+fn spoken_time(seconds: f64) -> String {
+    match seconds {
+        0.1.. => format!("{seconds:.2} s"),
+        1e-4.. => format!("{:.2} ms", seconds * 1e3),
+        _ => format!("{:.1} µs", seconds * 1e6),
+    }
+}
+
+/// The front as a table in Markdown, ascending in time, with the errors of every field, and a recommendation for each of
+/// `limits` (0.01 is 1 %).
+pub fn front_in_markdown(study: &Study, limits: &[f64]) -> String {
+    let words = Words::of(study);
+    let fields = words.fields.iter().map(|field| spoken(field));
+    let header: Vec<String> = ["method", "cells", "time"]
+        .map(str::to_owned)
+        .into_iter()
+        .chain(fields)
+        .collect();
+    let mut lines = vec![header.join(" | "), vec!["---"; header.len()].join(" | ")];
+    let mut front: Vec<&Row> = study.rows.iter().filter(|row| row.on_front).collect();
+    front.sort_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds));
+    lines.extend(front.into_iter().map(|row| {
+        let error = |field: &&str| row.errors.get(field).map_or(f64::NAN, |norms| norms.relative_l2);
+        let mut cells = vec![
+            row.method.literature_name(),
+            row.cells.to_string(),
+            spoken_time(row.wall_seconds),
+        ];
+        cells.extend(words.fields.iter().map(|field| format!("{:.2e}", error(field))));
+        cells.join(" | ")
+    }));
+    let mut text: String = lines.iter().map(|line| format!("| {line} |\n")).collect();
+    for limit in limits {
+        text += &format!("\n* {}", recommendation(study, *limit));
+    }
+    text + "\n"
 }
 
 #[cfg(test)]
@@ -297,6 +337,23 @@ mod tests {
         let expected =
             "For a stress error below 1 % the cheapest here is MPM with 10 cells (0.90 %, 0.25 s).";
         assert_eq!(recommendation(&study(rows), 0.01), expected);
+    }
+
+    #[test]
+    fn the_front_in_markdown_is_in_the_order_of_time_and_ends_with_advice() {
+        let mut rows = vec![row(0.5, Some(2e-3)), row(0.25, Some(9e-3)), row(0.3, Some(0.02))];
+        super::super::front::mark(&mut rows);
+        let text = front_in_markdown(&study(rows), &[0.01, 1e-3]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(
+            lines[0],
+            "| method | cells | time | displacement | velocity | stress |"
+        );
+        assert_eq!(lines[2], "| MPM | 10 | 0.25 s | NaN | NaN | 9.00e-3 |");
+        assert_eq!(lines[3], "| MPM | 10 | 0.50 s | NaN | NaN | 2.00e-3 |");
+        assert!(lines[5].starts_with("* For a stress error below 1 %"));
+        assert!(lines[6].starts_with("* No method here has a stress error below 0.1 %"));
+        assert_eq!(lines.len(), 7);
     }
 
     #[test]
