@@ -65,6 +65,11 @@ impl Outcome {
     pub fn fields(&self) -> Vec<FieldValues> {
         fields::fields(&self.particles, &self.liquid, &self.exact)
     }
+
+    /// The same one by one: of many particles there need not be all fields at a time.
+    pub fn for_each_field(&self, f: impl FnMut(FieldValues)) {
+        fields::for_each_field(&self.particles, &self.liquid, &self.exact, f);
+    }
 }
 
 /// Runs `scene`, writing particles to `folder` if there is one, and calls `progress` now and then.

@@ -103,11 +103,8 @@ pub fn write_files(study: &Study, title: &str, folder: &Folder) -> Result<Vec<Pa
 /// # Errors
 /// If the file cannot be written.
 pub fn write_fields(run: &Outcome, folder: &Folder) -> Result<PathBuf, OutputError> {
-    let panels: Vec<_> = run
-        .fields()
-        .iter()
-        .map(|field| panel(run, field, spoken(field.name)))
-        .collect();
+    let mut panels = Vec::new();
+    run.for_each_field(|field| panels.push(panel(run, &field, spoken(field.name))));
     let title = format!("{} (t = {:.4} s)", run.summary.title, run.summary.time);
     folder.write("fields.svg", &draw_fields(&title, "x [m]", &panels))
 }
@@ -122,12 +119,31 @@ fn panel(run: &Outcome, field: &FieldValues, name: String) -> FieldPanel {
     }
 }
 
-/// Values over the particles' positions, ascending.
+/// Values over the particles' positions, ascending, no more than a picture can show.
 fn over_position(run: &Outcome, values: &[f64]) -> Vec<(f64, f64)> {
     let positions = run.particles.position.iter().map(|x| x[0]);
     let mut points: Vec<_> = positions.zip(values.iter().copied()).collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    points
+    points.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    thinned(points)
+}
+
+/// Beyond this many points only the lowest and the highest of each group of neighbours are drawn.
+const MOST_POINTS: usize = 20_000;
+
+/// Of many points the extremes of neighbours, so that no outlier is lost; a value that is no number counts as one.
+fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    if points.len() <= MOST_POINTS {
+        return points;
+    }
+    let group = points.len().div_ceil(MOST_POINTS / 2);
+    let extremes = |group: &[(f64, f64)]| {
+        let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        let (low, high) = (group.iter().min_by(by_value), group.iter().max_by(by_value));
+        [low.copied(), high.copied()]
+    };
+    let mut few: Vec<_> = points.chunks(group).flat_map(extremes).flatten().collect();
+    few.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    few
 }
 
 fn note(norms: Option<&ErrorNorms>) -> String {
@@ -337,6 +353,23 @@ mod tests {
         let expected =
             "For a stress error below 1 % the cheapest here is MPM with 10 cells (0.90 %, 0.25 s).";
         assert_eq!(recommendation(&study(rows), 0.01), expected);
+    }
+
+    #[test]
+    fn of_a_million_points_few_are_drawn_and_no_outlier_is_lost() {
+        let mut points: Vec<_> = (0..1_000_000).map(|i| (f64::from(i), 1.0)).collect();
+        points[123_456].1 = -7.0;
+        points[654_321].1 = 9.0;
+        let few = thinned(points.clone());
+        assert!(
+            few.len() <= MOST_POINTS && few.len() > MOST_POINTS / 2,
+            "{}",
+            few.len()
+        );
+        assert!(few.contains(&(123_456.0, -7.0)) && few.contains(&(654_321.0, 9.0)));
+        assert!(few.is_sorted_by(|a, b| a.0 <= b.0));
+        let own = points.split_off(980_000);
+        assert_eq!(thinned(own.clone()), own);
     }
 
     #[test]
