@@ -6,6 +6,7 @@ mod lattice;
 
 pub use bins::{Bins, Outside};
 pub use lattice::lattice;
+#[cfg(feature = "scene")]
 pub(crate) use lattice::lattice_points;
 
 use nalgebra::{SMatrix, SVector};
