@@ -123,6 +123,10 @@ impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
         }
     }
 
+    fn bytes(&self) -> usize {
+        self.missing.capacity()
+    }
+
     fn degree(&self) -> usize {
         1
     }

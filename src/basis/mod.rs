@@ -38,6 +38,11 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     /// Takes in which cells hold particles, before a step; for families whose functions depend on where the material ends.
     fn take_in(&mut self, _grid: &Grid<T, D>, _bins: &Bins<D>) {}
 
+    /// Bytes allocated, for the user's information.
+    fn bytes(&self) -> usize {
+        0
+    }
+
     /// Polynomial degree of the values: what they can reproduce, and how far apart along an axis two DOFs
     /// can be whose values overlap.
     fn degree(&self) -> usize;

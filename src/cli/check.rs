@@ -36,8 +36,9 @@ const TWO_PHASES: [&str; 9] = [
 
 pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     let scene = load(name, &shared.set)?;
-    let built = simulation(&scene)?;
+    // One after the other: both need a simulation.
     let limit = critical_step(&scene)?;
+    let built = simulation(&scene)?;
     let critical = limit.map(|limit| limit.step);
     let method = MethodSummary::of(&scene);
     let mechanism = mechanism(&scene, limit.map_or(Mechanism::Wave, |limit| limit.mechanism));
@@ -88,7 +89,7 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
         }
     ));
     lines.push(format!(
-        "  memory        {:.0} bytes per particle, {:.3} MB in all",
+        "  memory        {:.0} bytes per particle while it steps, {:.3} MB in all",
         built.bytes_per_particle(),
         built.bytes_per_particle() * built.particle_count() as f64 / 1e6
     ));

@@ -7,6 +7,7 @@ mod list;
 mod print;
 mod run;
 mod study;
+mod study_table;
 
 use std::path::PathBuf;
 
@@ -79,7 +80,7 @@ struct StudyFlags {
     /// Numbers of cells.
     #[arg(long, value_delimiter = ',', value_name = "N,N,...", global = true)]
     cells: Vec<usize>,
-    /// Time each run this often; the median counts.
+    /// Time each run at least this often, in turns; the median counts. Short runs are timed until that takes 0.1 s.
     #[arg(long, value_name = "N", default_value_t = 1, global = true)]
     repeat: usize,
 }

@@ -1,23 +1,27 @@
 //! `materialpoint study`, and the default study.
 
-use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::output::Folder;
 use materialpoint::reconstruction::SubPoints;
 use materialpoint::scene::Scene;
-use materialpoint::study::{Plan, Row, Study, recommendation, study, write_files};
+use materialpoint::study::{Plan, Row, recommendation, study, write_files};
 use serde_json::json;
 
 use super::bar::bar;
 use super::failure::Failure;
 use super::print::{print, print_json};
 use super::run::{load, warn};
-use super::{Shared, StudyFlags};
+use super::{Shared, StudyFlags, study_table};
 
 /// Scene of the default study.
 const DEFAULT_SCENE: &str = "vibrating-bar-large";
 /// Its numbers of cells.
 const DEFAULT_CELLS: [usize; 4] = [10, 20, 40, 80];
+/// Stress error that the recommendation asks for.
+const LIMIT: f64 = 0.01;
+
+/// Shorter runs are timed again until that makes up this (s).
+const LEAST_SECONDS: f64 = 0.1;
 
 pub(super) fn default_study(shared: &Shared, flags: &StudyFlags) -> Result<(), Failure> {
     let scene = Scene::from_toml(Scene::builtin(DEFAULT_SCENE).unwrap_or_default(), &shared.set)?;
@@ -49,9 +53,10 @@ fn report(scene: &Scene, shared: &Shared, flags: &StudyFlags, cells: &[usize]) -
     warn(&warnings);
     let files = write_files(&done, &scene.title, &folder)?;
     if shared.json {
-        return print_json(&json!({ "rows": done.rows }));
+        let recommendation = recommendation(&done, LIMIT);
+        return print_json(&json!({ "rows": done.rows, "recommendation": recommendation }));
     }
-    let mut text = report_text(&done, scene);
+    let mut text = study_table::text(&done, &scene.title) + &recommendation(&done, LIMIT) + "\n";
     for file in files {
         text += &format!("wrote {}\n", file.display());
     }
@@ -78,6 +83,7 @@ fn plan(scene: &Scene, flags: &StudyFlags, default_cells: &[usize]) -> Result<Pl
         methods: methods(scene, &flags.methods)?,
         cells,
         repeat: flags.repeat,
+        least_seconds: LEAST_SECONDS,
     })
 }
 
@@ -130,92 +136,4 @@ fn method(name: &str) -> Result<Method, Failure> {
 fn warnings(row: &Row) -> Vec<String> {
     let named = |warning| format!("{}, {} cells: {warning}", row.method, row.cells);
     row.warnings.iter().map(named).collect()
-}
-
-/// The report for people: a table, what its columns mean, and a sentence to act on.
-fn report_text(study: &Study, scene: &Scene) -> String {
-    let mut table = Table::new();
-    table.load_preset(presets::NOTHING);
-    table.set_style(TableComponent::HeaderLines, '─');
-    table.set_style(TableComponent::MiddleHeaderIntersections, '─');
-    let mut header = vec!["method", "cells", "stress error", "order", "u error"];
-    if study.phases > 1 {
-        header.push("p error");
-    }
-    header.extend(["time [s]", "Mps/s", "crossings", "mass", "momentum", "front"]);
-    table.set_header(header);
-    for row in &study.rows {
-        table.add_row(cells_of(row, study.phases));
-    }
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    let stopped: String = study
-        .rows
-        .iter()
-        .filter_map(|row| {
-            Some(format!(
-                "{}, {} cells stopped: {}\n",
-                row.method,
-                row.cells,
-                row.stopped.as_ref()?
-            ))
-        })
-        .collect();
-    format!(
-        "{}\n\n{table}\n\
-         {}: relative L2 against the reference; order: of the stress error; Mps/s: million particle\n\
-         steps per second; mass, momentum: largest conservation error; front: no other row is faster and more accurate\n\
-         \n{stopped}{}\n",
-        scene.title,
-        match study.phases {
-            1 => "stress, u error",
-            _ => "effective stress, solid u, pore pressure error",
-        },
-        recommendation(study, 0.01)
-    )
-}
-
-fn cells_of(row: &Row, phases: usize) -> Vec<String> {
-    let error = |field| {
-        row.errors
-            .get(field)
-            .map_or_else(|| "-".into(), |n| format!("{:.2e}", n.relative_l2))
-    };
-    let (stress, displacement) = match phases {
-        1 => ("stress", "displacement"),
-        _ => ("effective_stress", "solid_displacement"),
-    };
-    let order = row
-        .orders
-        .get(stress)
-        .map_or_else(String::new, |order| format!("{order:.1}"));
-    // The worse of the phases.
-    let kept = |pick: fn(&materialpoint::run::ConservationSummary) -> f64| {
-        let worst = row.conservation.values().map(pick).reduce(f64::max);
-        worst.map_or_else(|| "-".into(), |error| format!("{error:.0e}"))
-    };
-    let mut cells = vec![
-        row.method.literature_name(),
-        row.cells.to_string(),
-        if row.stopped.is_some() {
-            "stopped".into()
-        } else {
-            error(stress)
-        },
-        order,
-        error(displacement),
-    ];
-    if phases > 1 {
-        cells.push(error("pore_pressure"));
-    }
-    cells.extend([
-        format!("{:.3}", row.wall_seconds),
-        format!("{:.1}", row.particle_steps_per_second / 1e6),
-        row.grid_crossings.to_string(),
-        kept(|errors| errors.mass),
-        kept(|errors| errors.momentum),
-        if row.on_front { "*".into() } else { String::new() },
-    ]);
-    cells
 }

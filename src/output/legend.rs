@@ -57,7 +57,8 @@ fn draw_lost(canvas: &mut Canvas, (left, y): Point, lost: usize) {
     let font = Font::new(TICK, GREY, Anchor::Start);
     let noun = if lost == 1 { "point" } else { "points" };
     canvas.text((left, y), &format!("{lost} {noun} not drawn:"), font);
-    canvas.text((left, y + 17.0), "not positive and finite", font);
+    canvas.text((left, y + 17.0), "stopped, or not", font);
+    canvas.text((left, y + 34.0), "positive and finite", font);
 }
 
 fn draw_front(canvas: &mut Canvas, (left, y): Point) -> f64 {

@@ -62,7 +62,8 @@ impl FieldPanel {
     fn draw_reference(&self, canvas: &mut Canvas, frame: &Frame) {
         let placed: Vec<Option<Point>> = self.reference.iter().map(|pair| frame.place(*pair)).collect();
         for piece in placed.split(Option::is_none) {
-            let piece: Vec<Point> = piece.iter().copied().flatten().collect();
+            let mut piece: Vec<Point> = piece.iter().copied().flatten().collect();
+            piece.dedup_by_key(|(x, y)| third_of_pixel(*x, *y));
             canvas.line(&piece, Stroke::full(REFERENCE, REFERENCE_WIDTH));
         }
     }
@@ -113,6 +114,10 @@ fn radius(particles: usize, width: f64) -> f64 {
 fn distinct(points: impl Iterator<Item = Point>) -> Vec<Point> {
     let mut taken = HashSet::new();
     points
-        .filter(|(x, y)| taken.insert(((3.0 * x) as i64, (3.0 * y) as i64)))
+        .filter(|(x, y)| taken.insert(third_of_pixel(*x, *y)))
         .collect()
+}
+
+fn third_of_pixel(x: f64, y: f64) -> (i64, i64) {
+    ((3.0 * x) as i64, (3.0 * y) as i64)
 }

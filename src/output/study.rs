@@ -44,7 +44,10 @@ pub struct CurvePoint {
 /// A picture (SVG text) of a study: error against cost, both axes logarithmic, one curve a method, the legend to
 /// the right; the best points are ringed, labelled and joined by a stair.
 ///
-/// The labels bear their units in brackets. Points that are not positive and finite are left out and counted.
+/// Without a best point it is a picture of curves and nothing more: no stair, and no word on which way is better.
+///
+/// The labels bear their units in brackets. Points that are not positive and finite (a run that
+/// stopped may be not a number) are left out and counted.
 pub fn draw_study(title: &str, x_label: &str, y_label: &str, curves: &[Curve]) -> String {
     let frame = frame(curves);
     let legend_left = frame.right() + EDGE;
@@ -169,7 +172,9 @@ fn draw_labels(canvas: &mut Canvas, frame: &Frame, placed: &[Vec<Point>], front:
     front
         .iter()
         .for_each(|(at, _)| obstacles.marker(*at, MARKER + 6.0));
-    draw_hint(canvas, frame, &mut obstacles);
+    if !front.is_empty() {
+        draw_hint(canvas, frame, &mut obstacles);
+    }
     for (at, label) in front.iter().filter(|(_, label)| !label.is_empty()) {
         let (x, y) = obstacles.place(*at, label, TICK);
         canvas.text(

@@ -149,20 +149,19 @@ impl Canvas {
             Anchor::End => "end",
         };
         let bold = if font.bold { " font-weight=\"bold\"" } else { "" };
-        let halo = if font.halo {
-            " stroke=\"white\" stroke-width=\"4\" paint-order=\"stroke\""
-        } else {
-            ""
-        };
         let turn = if font.upright {
             format!(" transform=\"rotate(-90 {x:.1} {y:.1})\"")
         } else {
             String::new()
         };
-        self.add(&format!(
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size:.1}\" fill=\"{colour}\" \
-             text-anchor=\"{anchor}\"{bold}{halo}{turn}>{text}</text>"
-        ));
+        let place =
+            format!("x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size:.1}\" text-anchor=\"{anchor}\"{bold}{turn}");
+        if font.halo {
+            // An element of its own: not every viewer paints a stroke behind its filling when asked to.
+            let rim = "fill=\"white\" stroke=\"white\" stroke-width=\"4\" aria-hidden=\"true\"";
+            self.add(&format!("<text {place} {rim}>{text}</text>"));
+        }
+        self.add(&format!("<text {place} fill=\"{colour}\">{text}</text>"));
     }
 
     /// The whole picture as text.

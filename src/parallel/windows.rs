@@ -28,8 +28,7 @@ impl<'a, Q: Copy + Zero + Send> Windows<'a, Q> {
         width: usize,
     ) -> Self {
         let values = if spans.len() > 1 {
-            let count = spans.last().map_or(0, |last| last.offset + last.len) * width;
-            storage.resize(count, Q::zero());
+            fit(spans, storage, width);
             &mut storage[..]
         } else {
             sums
@@ -59,6 +58,22 @@ impl<Q: Send> Sliced for Windows<'_, Q> {
         let part = |spans, values| Self { spans, values, width };
         (part(left, a), part(right, b))
     }
+}
+
+/// Room in windows for DOFs that spans come to share when their particles move apart.
+const SLACK: usize = 8;
+
+/// Gives `storage` the length that the windows of `spans` need together, none where there is a single span.
+pub(crate) fn fit<Q: Copy + Zero>(spans: &[SpanWindow], storage: &mut Vec<Q>, width: usize) {
+    let count = match spans {
+        [.., last] if spans.len() > 1 => (last.offset + last.len) * width,
+        _ => 0,
+    };
+    if count > storage.capacity() {
+        storage.clear();
+        storage.reserve_exact(count + SLACK * spans.len() * width);
+    }
+    storage.resize(count, Q::zero());
 }
 
 /// Adds the `values` of the windows, span by span, up in the DOFs' `sums`; nothing to do where there is a single span.

@@ -25,15 +25,24 @@ impl<const D: usize> Bins<D> {
     /// # Errors
     /// [`Outside`] names the first particle that is not in the grid.
     pub fn new<T: Scalar>(grid: &Grid<T, D>, positions: &[SVector<T, D>]) -> Result<Self, Outside> {
+        let mut bins = Self::without_lists(grid, positions)?;
+        bins.list(grid);
+        Ok(bins)
+    }
+
+    /// Cells of `positions` alone; the lists take no memory, and are empty, until [`Bins::list`].
+    pub(crate) fn without_lists<T: Scalar>(
+        grid: &Grid<T, D>,
+        positions: &[SVector<T, D>],
+    ) -> Result<Self, Outside> {
         let mut bins = Self {
             cell_of: vec![[u32::MAX; D]; positions.len()],
-            start: vec![0; grid.cell_count() + 1],
-            order: vec![0; positions.len()],
-            occupied: Vec::with_capacity(grid.cell_count()),
+            start: Vec::new(),
+            order: Vec::new(),
+            occupied: Vec::new(),
             lists_are_stale: true,
         };
         bins.locate(grid, positions)?;
-        bins.list(grid);
         Ok(bins)
     }
 
@@ -77,6 +86,11 @@ impl<const D: usize> Bins<D> {
             return;
         }
         self.lists_are_stale = false;
+        if self.start.is_empty() {
+            self.start = vec![0; grid.cell_count() + 1];
+            self.order = vec![0; self.cell_of.len()];
+            self.occupied = Vec::with_capacity(grid.cell_count());
+        }
         self.start.fill(0);
         for cell in &self.cell_of {
             self.start[grid.linear(cell) + 1] += 1;
@@ -117,7 +131,10 @@ impl<const D: usize> Bins<D> {
     /// Particles of the cell with number `cell`, in ascending order, as of the last [`Bins::list`].
     #[inline(always)]
     pub fn particles_in(&self, cell: usize) -> &[u32] {
-        &self.order[self.start[cell] as usize..self.start[cell + 1] as usize]
+        match (self.start.get(cell), self.start.get(cell + 1)) {
+            (Some(&first), Some(&end)) => &self.order[first as usize..end as usize],
+            _ => &[],
+        }
     }
 
     /// Numbers of the cells that hold a particle, ascending.
@@ -125,9 +142,11 @@ impl<const D: usize> Bins<D> {
         &self.occupied
     }
 
-    /// Bytes per particle, whatever the dimension's number of cells.
-    pub fn bytes_per_particle() -> usize {
-        size_of::<Cell<D>>() + size_of::<u32>()
+    /// Bytes allocated: per particle its cell and its place in the lists, per cell the start of its list and its place
+    /// among the occupied.
+    pub fn bytes(&self) -> usize {
+        let lists = self.start.capacity() + self.order.capacity() + self.occupied.capacity();
+        self.cell_of.capacity() * size_of::<Cell<D>>() + lists * size_of::<u32>()
     }
 }
 
@@ -151,6 +170,18 @@ pub(crate) fn relocate<T: Scalar, const D: usize>(
 mod tests {
     use super::*;
     use nalgebra::vector;
+
+    #[test]
+    fn lists_cost_nothing_until_they_are_asked_for() {
+        let grid = Grid::new(vector![0.0], vector![4.0], [4]).unwrap();
+        let x = [vector![3.5], vector![0.5]];
+        let mut bins = Bins::without_lists(&grid, &x).unwrap();
+        assert_eq!((bins.bytes(), bins.cell_of(0)), (2 * 4, &[3]));
+        assert_eq!((bins.particles_in(3), bins.occupied()), (&[][..], &[][..]));
+        bins.list(&grid);
+        assert_eq!((bins.particles_in(3), bins.occupied()), (&[0][..], &[0, 3][..]));
+        assert_eq!(bins.bytes(), 4 * (2 + 2 + 5 + 4));
+    }
 
     #[test]
     fn lists_hold_every_particle_once_and_follow_a_crossing() {

@@ -14,24 +14,32 @@ pub fn lattice<T: Scalar, const D: usize>(
     max: &SVector<T, D>,
     per_cell: [usize; D],
 ) -> Vec<(SVector<T, D>, T)> {
+    lattice_points(grid, min, max, per_cell).collect()
+}
+
+/// The same one by one; knows how many will come.
+pub(crate) fn lattice_points<T: Scalar, const D: usize>(
+    grid: &Grid<T, D>,
+    min: &SVector<T, D>,
+    max: &SVector<T, D>,
+    per_cell: [usize; D],
+) -> impl ExactSizeIterator<Item = (SVector<T, D>, T)> + use<T, D> {
+    let min = *min;
     let extent = max - min;
     let counts: [usize; D] = std::array::from_fn(|a| {
         let wanted = (extent[a] / grid.cell_size()[a]).primal() * per_cell[a] as f64;
         wanted.round().max(1.0) as usize
     });
     let volume = (0..D).fold(T::one(), |v, a| v * extent[a] / T::count(counts[a]));
-    let total = counts.iter().product();
     let half = T::one() / T::lit(2.0);
-    let mut points = Vec::with_capacity(total);
-    for mut index in 0..total {
+    (0..counts.iter().product()).map(move |mut index| {
         let position = SVector::from_fn(|a, _| {
             let k = index % counts[a];
             index /= counts[a];
             min[a] + extent[a] * (T::count(k) + half) / T::count(counts[a])
         });
-        points.push((position, volume));
-    }
-    points
+        (position, volume)
+    })
 }
 
 #[cfg(test)]

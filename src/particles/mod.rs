@@ -9,11 +9,18 @@ pub(crate) use bins::relocate;
 pub use bins::{Bins, Outside};
 pub use lattice::lattice;
 pub(crate) use movable::{Movable, Movables};
+#[cfg(feature = "scene")]
+pub(crate) use lattice::lattice_points;
 
 use nalgebra::{SMatrix, SVector};
 
 use crate::error::SetupError;
 use crate::scalar::Scalar;
+
+/// Bytes allocated; none for values without a size, however many.
+fn allocated<A>(values: &Vec<A>) -> usize {
+    values.capacity().saturating_mul(size_of::<A>())
+}
 
 /// Particle data, one array per quantity. `S` is the law's state and `P` the second phase's data per
 /// particle; both are `()` where nothing is needed and then take no memory.
@@ -44,16 +51,21 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
     ///
     /// `points` gives position (m) and volume of each, `density` is the common mass density (kg/m3).
     pub fn at_rest(points: &[(SVector<T, D>, T)], density: T) -> Self {
-        let n = points.len();
-        let position: Vec<_> = points.iter().map(|p| p.0).collect();
+        Self::from_points(points.iter().copied(), density)
+    }
+
+    /// The same from points that come one by one.
+    pub(crate) fn from_points(points: impl Iterator<Item = (SVector<T, D>, T)>, density: T) -> Self {
+        let (position, volume): (Vec<_>, Vec<_>) = points.unzip();
+        let n = position.len();
         Self {
             initial_position: position.clone(),
             position,
             displacement: vec![SVector::zeros(); n],
             velocity: vec![SVector::zeros(); n],
             stress: vec![SMatrix::zeros(); n],
-            mass: points.iter().map(|p| p.1 * density).collect(),
-            volume: points.iter().map(|p| p.1).collect(),
+            mass: volume.iter().map(|&v| v * density).collect(),
+            volume,
             state: vec![S::default(); n],
             phase: vec![P::default(); n],
         }
@@ -94,6 +106,22 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
             + 2 * size_of::<T>()
             + size_of::<S>()
             + size_of::<P>()
+    }
+
+    /// Bytes allocated in these arrays.
+    pub fn bytes(&self) -> usize {
+        let vectors = [
+            &self.initial_position,
+            &self.position,
+            &self.displacement,
+            &self.velocity,
+        ];
+        let vectors: usize = vectors.map(Vec::capacity).iter().sum();
+        vectors * size_of::<SVector<T, D>>()
+            + self.stress.capacity() * size_of::<SMatrix<T, D, D>>()
+            + (self.mass.capacity() + self.volume.capacity()) * size_of::<T>()
+            + allocated(&self.state)
+            + allocated(&self.phase)
     }
 
     /// Checks lengths and values.

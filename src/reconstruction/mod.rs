@@ -184,7 +184,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         0
     }
 
-    /// Bytes of its own per occupied cell and per particle, for the user's information.
+    /// Bytes allocated, for the user's information.
     fn bytes(&self) -> usize {
         0
     }

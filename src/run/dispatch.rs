@@ -15,7 +15,7 @@ use crate::phase::{OnePhase, Phase, PoreLiquid, TwoPhase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::scene::{Law, Phases, ScalarKind, Scene};
-use crate::stepper::{Setup, Simulation, Stepper};
+use crate::stepper::{Setup, Simulation, Stepper, SurfacePoint};
 
 /// Builds the stepper a scene asks for.
 pub(super) fn build(scene: &Scene) -> Result<Box<dyn Simulation<1>>, RunError> {
@@ -93,25 +93,39 @@ where
         B: BasisFamily<T, 1> + Send + 'static,
         R: Reconstruction<T, 1> + Clone + Send + 'static,
     {
-        let Start { scene, initial } = &self.start;
-        match scene.material.phases {
-            Phases::One { .. } => {
-                let particles = initial.particles.cast();
-                self.stepper(basis, reconstruction, OnePhase, particles)
-            }
+        let Self { start, law } = self;
+        let Initial {
+            particles,
+            liquid,
+            surface,
+        } = start.initial;
+        let rest = Rest {
+            scene: start.scene,
+            law,
+            surface,
+        };
+        match start.scene.material.phases {
+            Phases::One { .. } => rest.stepper(basis, reconstruction, OnePhase, particles.into_cast()),
             // Known at compile time: no stepper of two phases is built for a reconstruction that has none.
             Phases::Two(_) if R::PARTICLE_MATRIX => Err(SetupError::OnePhaseOnly.into()),
             Phases::Two(soil) => {
-                let mut particles = initial.particles.cast();
-                particles.phase = initial.liquid.iter().map(cast_liquid).collect();
+                let mut particles = particles.into_cast();
+                particles.phase = liquid.into_iter().map(cast_liquid).collect();
                 let phase: TwoPhase<T> = soil.cast();
-                self.stepper(basis, reconstruction, phase, particles)
+                rest.stepper(basis, reconstruction, phase, particles)
             }
         }
     }
 }
 
-impl<L> WithLaw<'_, L> {
+/// What a stepper needs besides basis, reconstruction, phase and particles.
+struct Rest<'a, L> {
+    scene: &'a Scene,
+    law: L,
+    surface: Vec<SurfacePoint<f64>>,
+}
+
+impl<L> Rest<'_, L> {
     fn stepper<T, B, R, P>(
         self,
         basis: B,
@@ -126,22 +140,21 @@ impl<L> WithLaw<'_, L> {
         L: ConstitutiveLaw<T, 1> + Clone + 'static,
         P: Phase<T, 1> + Clone + 'static,
     {
-        let Start { scene, initial } = self.start;
         let stepper = Stepper::new(Setup {
-            grid: grid(scene)?,
+            grid: grid(self.scene)?,
             basis,
             reconstruction,
             law: self.law,
             phase,
-            velocity_mass: scene.method.velocity_mass,
+            velocity_mass: self.scene.method.velocity_mass,
             particles,
-            surface: initial.surface.iter().map(|point| point.cast()).collect(),
+            surface: self.surface.iter().map(|point| point.cast()).collect(),
         })?;
         Ok(Box::new(stepper))
     }
 }
 
-fn cast_liquid<T: Scalar>(liquid: &PoreLiquid<f64, 1>) -> PoreLiquid<T, 1> {
+fn cast_liquid<T: Scalar>(liquid: PoreLiquid<f64, 1>) -> PoreLiquid<T, 1> {
     PoreLiquid {
         velocity: liquid.velocity.map(T::lit),
         pressure: T::lit(liquid.pressure),

@@ -23,29 +23,42 @@ pub(super) fn fields(
     liquid: &[PoreLiquid<f64, 1>],
     exact: &Exact,
 ) -> Vec<FieldValues> {
-    let field = |name, unit, values, exact: &[f64]| FieldValues {
-        name,
-        unit,
-        values,
-        exact: exact.to_vec(),
+    let mut all = Vec::new();
+    for_each_field(particles, liquid, exact, |field| all.push(field));
+    all
+}
+
+/// The same one by one, so that no more than one need be in memory.
+pub(super) fn for_each_field(
+    particles: &Particles<f64, 1>,
+    liquid: &[PoreLiquid<f64, 1>],
+    exact: &Exact,
+    mut f: impl FnMut(FieldValues),
+) {
+    let mut field = |name, unit, values, exact: &[f64]| {
+        f(FieldValues {
+            name,
+            unit,
+            values,
+            exact: exact.to_vec(),
+        });
+    };
+    let names = match liquid.is_empty() {
+        true => ["displacement", "velocity", "stress"],
+        false => ["solid_displacement", "solid_velocity", "effective_stress"],
     };
     let displacement = particles.displacement.iter().map(|u| u[0]).collect();
+    field(names[0], "m", displacement, &exact.displacement);
     let velocity = particles.velocity.iter().map(|v| v[0]).collect();
-    let stress = particles.stress.iter().map(|s| s[(0, 0)]).collect();
-    if liquid.is_empty() {
-        return vec![
-            field("displacement", "m", displacement, &exact.displacement),
-            field("velocity", "m/s", velocity, &exact.velocity),
-            field("stress", "Pa", stress, &exact.stress),
-        ];
+    field(names[1], "m/s", velocity, &exact.velocity);
+    if !liquid.is_empty() {
+        let velocity = liquid.iter().map(|l| l.velocity[0]).collect();
+        field("liquid_velocity", "m/s", velocity, &exact.liquid_velocity);
     }
-    let liquid_velocity = liquid.iter().map(|l| l.velocity[0]).collect();
-    let pressure = liquid.iter().map(|l| l.pressure).collect();
-    vec![
-        field("solid_displacement", "m", displacement, &exact.displacement),
-        field("solid_velocity", "m/s", velocity, &exact.velocity),
-        field("liquid_velocity", "m/s", liquid_velocity, &exact.liquid_velocity),
-        field("effective_stress", "Pa", stress, &exact.stress),
-        field("pore_pressure", "Pa", pressure, &exact.pore_pressure),
-    ]
+    let stress = particles.stress.iter().map(|s| s[(0, 0)]).collect();
+    field(names[2], "Pa", stress, &exact.stress);
+    if !liquid.is_empty() {
+        let pressure = liquid.iter().map(|l| l.pressure).collect();
+        field("pore_pressure", "Pa", pressure, &exact.pore_pressure);
+    }
 }

@@ -6,7 +6,7 @@ use super::error::RunError;
 use super::state::{InitialState, set};
 use super::surface::surfaces;
 use crate::grid::Grid;
-use crate::particles::{Particles, lattice};
+use crate::particles::{Particles, lattice_points};
 use crate::phase::PoreLiquid;
 use crate::scene::{Body, Scene};
 use crate::stepper::SurfacePoint;
@@ -27,7 +27,7 @@ pub(super) fn initial(scene: &Scene, grid: &Grid<f64, 1>) -> Result<Initial, Run
         let first = all.particles.len();
         let (particles, liquid) = fill(scene, body, grid)?;
         append(&mut all.particles, particles);
-        all.liquid.extend(liquid);
+        move_to(&mut all.liquid, liquid);
         let range = first..all.particles.len();
         all.surface.extend(surfaces(scene, body, &all.particles, range));
     }
@@ -41,19 +41,21 @@ fn fill(
 ) -> Result<(Particles<f64, 1>, Vec<PoreLiquid<f64, 1>>), RunError> {
     let (min, max) = (first(&body.min), first(&body.max));
     let per_cell = body.particles_per_cell.first().copied().unwrap_or(1);
-    let mut points = lattice(grid, &SVector::from([min]), &SVector::from([max]), [per_cell]);
     let mut random = fastrand::Rng::with_seed(body.seed);
-    for (x, spacing) in &mut points {
+    let points = lattice_points(grid, &SVector::from([min]), &SVector::from([max]), [per_cell]);
+    let points = points.map(|(mut x, spacing)| {
         // Within its own sub-interval, so that particles keep their order and the body its volume.
-        x[0] += body.jitter * *spacing * (random.f64() - 0.5);
-    }
-    let mut particles = Particles::at_rest(&points, scene.material.solid_density());
-    let mut liquid = Vec::new();
+        x[0] += body.jitter * spacing * (random.f64() - 0.5);
+        (x, spacing)
+    });
+    let mut particles = Particles::from_points(points, scene.material.solid_density());
+    let flows = scene.material.phases.count() == 2;
+    let mut liquid = Vec::with_capacity(if flows { particles.len() } else { 0 });
     let state = InitialState::new(scene, body, grid)?;
     for p in 0..particles.len() {
         let values = state.at(particles.position[p][0])?;
         set(&mut particles, p, &values);
-        if scene.material.phases.count() == 2 {
+        if flows {
             liquid.push(values.liquid());
         }
     }
@@ -65,13 +67,23 @@ pub(super) fn first(values: &[f64]) -> f64 {
 }
 
 fn append(all: &mut Particles<f64, 1>, more: Particles<f64, 1>) {
-    all.initial_position.extend(more.initial_position);
-    all.position.extend(more.position);
-    all.displacement.extend(more.displacement);
-    all.velocity.extend(more.velocity);
-    all.stress.extend(more.stress);
-    all.mass.extend(more.mass);
-    all.volume.extend(more.volume);
+    move_to(&mut all.initial_position, more.initial_position);
+    move_to(&mut all.position, more.position);
+    move_to(&mut all.displacement, more.displacement);
+    move_to(&mut all.velocity, more.velocity);
+    move_to(&mut all.stress, more.stress);
+    move_to(&mut all.mass, more.mass);
+    move_to(&mut all.volume, more.volume);
     all.state.extend(more.state);
     all.phase.extend(more.phase);
+}
+
+/// Appends without a copy of the first body's values, and without room to spare.
+fn move_to<A>(all: &mut Vec<A>, more: Vec<A>) {
+    if all.is_empty() {
+        *all = more;
+    } else {
+        all.reserve_exact(more.len());
+        all.extend(more);
+    }
 }

@@ -15,7 +15,7 @@ use crate::scene::{ParticleOutput, Scene};
 use crate::stepper::Simulation;
 
 /// Energy is sampled this often in a run: often enough to see it grow, seldom enough to cost nothing.
-const ENERGY_SAMPLES: usize = 1000;
+pub(super) const ENERGY_SAMPLES: usize = 1000;
 
 /// Figures gathered along the way.
 #[derive(Clone, Copy, Debug, Default)]
@@ -55,11 +55,12 @@ impl EnergyRange {
     }
 }
 
-/// Steps `simulation` to the end, writing particles when the scene asks for it.
+/// Steps `simulation` to the end, writing particles when the scene asks for it, and sampling the energy `samples` times.
 pub(super) fn march(
     scene: &Scene,
     simulation: &mut dyn Simulation<1>,
     schedule: &Schedule,
+    samples: usize,
     folder: Option<&Folder>,
     files: &mut Vec<PathBuf>,
     progress: &mut dyn FnMut(Progress),
@@ -67,7 +68,7 @@ pub(super) fn march(
     let mut march = March::default();
     march.energy.sample(simulation.energy().total());
     let steps = schedule.steps;
-    let sample_every = steps.div_ceil(ENERGY_SAMPLES).max(1);
+    let sample_every = steps.div_ceil(samples.max(1)).max(1);
     let mut begun = Instant::now();
     for step in 0..steps {
         let dt = schedule.size(step);
@@ -89,7 +90,7 @@ pub(super) fn march(
             march.energy.sample(simulation.energy().total());
             if let (true, ParticleOutput::Csv, Some(folder)) = (writes, scene.output.particles, folder) {
                 let name = format!("particles-{done:08}.csv");
-                let table = particle_table(scene, simulation);
+                let table = particle_table(scene, &simulation.particles(), &simulation.liquid());
                 files.push(table.write_csv(folder, &name)?);
             }
             progress(Progress { step: done, steps });

@@ -26,7 +26,7 @@ use std::path::PathBuf;
 
 use dispatch::build;
 use loads::forcing;
-use march::march;
+use march::{ENERGY_SAMPLES, march};
 use particle_table::particle_table;
 use schedule::Schedule;
 
@@ -65,6 +65,11 @@ impl Outcome {
     pub fn fields(&self) -> Vec<FieldValues> {
         fields::fields(&self.particles, &self.liquid, &self.exact)
     }
+
+    /// The same one by one: of many particles there need not be all fields at a time.
+    pub fn for_each_field(&self, f: impl FnMut(FieldValues)) {
+        fields::for_each_field(&self.particles, &self.liquid, &self.exact, f);
+    }
 }
 
 /// Runs `scene`, writing particles to `folder` if there is one, and calls `progress` now and then.
@@ -76,27 +81,28 @@ pub fn run(
     folder: Option<&Folder>,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Outcome, RunError> {
+    // Before the run's own simulation is there: the critical step takes one as large.
+    let schedule = Schedule::new(scene)?;
+    let warnings = limits::warnings(scene, &schedule, || critical_step(scene))?;
     let mut simulation = build(scene)?;
-    let schedule = Schedule::new(scene, simulation.as_ref())?;
-    let critical = || Ok(simulation.critical_step(&forcing(scene, 0.0, 1.0)?));
-    let warnings = limits::warnings(scene, &schedule, critical)?;
     let mut files = Vec::new();
     let march = march(
         scene,
         simulation.as_mut(),
         &schedule,
+        ENERGY_SAMPLES,
         folder,
         &mut files,
         progress,
     )?;
-    if let (ParticleOutput::Csv, Some(folder)) = (scene.output.particles, folder) {
-        files.push(particle_table(scene, simulation.as_ref()).write_csv(folder, "particles.csv")?);
-    }
-    let (particles, liquid) = (simulation.particles(), simulation.liquid());
-    let exact = Exact::of(scene, &particles, &schedule)?;
-    let norms = ErrorNorms::all(&fields::fields(&particles, &liquid, &exact));
-    let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, march, norms);
+    let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, march);
     summary.warnings = warnings;
+    let (particles, liquid) = simulation.into_particles();
+    if let (ParticleOutput::Csv, Some(folder)) = (scene.output.particles, folder) {
+        files.push(particle_table(scene, &particles, &liquid).write_csv(folder, "particles.csv")?);
+    }
+    let exact = Exact::of(scene, &particles, &schedule)?;
+    summary.errors = ErrorNorms::all(&particles, &liquid, &exact);
     Ok(Outcome {
         summary,
         particles,
@@ -106,14 +112,33 @@ pub fn run(
     })
 }
 
+/// Time (s) that the steps of `scene` take, and nothing else: no file, no energy on the way, no errors.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn step_loop_seconds(scene: &Scene) -> Result<f64, RunError> {
+    let schedule = Schedule::new(scene)?;
+    let mut simulation = build(scene)?;
+    let mut files = Vec::new();
+    let march = march(
+        scene,
+        simulation.as_mut(),
+        &schedule,
+        1,
+        None,
+        &mut files,
+        &mut |_| {},
+    )?;
+    Ok(march.wall.as_secs_f64())
+}
+
 /// Largest stable time step (s) of the scene's initial layout; `None` if nothing resists a motion.
 ///
 /// # Errors
 /// If the scene cannot be set up.
 pub fn critical_step(scene: &Scene) -> Result<Option<CriticalStep<f64>>, RunError> {
-    let simulation = build(scene)?;
     // Only which faces are held matters, not how they move.
-    Ok(simulation.critical_step(&forcing(scene, 0.0, 1.0)?))
+    Ok(build(scene)?.into_critical_step(&forcing(scene, 0.0, 1.0)?))
 }
 
 /// A freshly built simulation of the scene, to look at or to step by hand.

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::error::RunError;
-use super::fields::FieldValues;
+use super::fields::for_each_field;
 use super::reference::{Solution, solution};
 use super::schedule::Schedule;
 use crate::particles::Particles;
+use crate::phase::PoreLiquid;
 use crate::scene::Scene;
 
 /// Reference values at the particles, in their order; empty where the scene names no reference, and those of the liquid in
@@ -97,10 +98,17 @@ impl ErrorNorms {
     }
 
     /// Errors of the fields that a reference knows.
-    pub(super) fn all(fields: &[FieldValues]) -> BTreeMap<&'static str, Self> {
-        let known = fields.iter().filter(|field| !field.exact.is_empty());
-        known
-            .map(|field| (field.name, Self::new(field.values.iter().copied(), &field.exact)))
-            .collect()
+    pub(super) fn all(
+        particles: &Particles<f64, 1>,
+        liquid: &[PoreLiquid<f64, 1>],
+        exact: &Exact,
+    ) -> BTreeMap<&'static str, Self> {
+        let mut norms = BTreeMap::new();
+        for_each_field(particles, liquid, exact, |field| {
+            if !field.exact.is_empty() {
+                norms.insert(field.name, Self::new(field.values.iter().copied(), &field.exact));
+            }
+        });
+        norms
     }
 }

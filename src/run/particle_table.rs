@@ -2,15 +2,18 @@
 
 use crate::output::Table;
 use crate::particles::Particles;
+use crate::phase::PoreLiquid;
 use crate::scene::{Phases, Scene};
-use crate::stepper::Simulation;
 
 /// Columns of `particles.csv` in one dimension.
-pub(super) fn particle_table(scene: &Scene, simulation: &dyn Simulation<1>) -> Table {
-    let particles = simulation.particles();
+pub(super) fn particle_table(
+    scene: &Scene,
+    particles: &Particles<f64, 1>,
+    liquid: &[PoreLiquid<f64, 1>],
+) -> Table {
     let columns = match scene.material.phases {
-        Phases::One { .. } => one_phase(&particles),
-        Phases::Two(soil) => two_phases(&particles, simulation, soil.porosity),
+        Phases::One { .. } => one_phase(particles),
+        Phases::Two(soil) => two_phases(particles, liquid, soil.porosity),
     };
     let (header, columns) = columns
         .into_iter()
@@ -34,8 +37,7 @@ fn one_phase(particles: &Particles<f64, 1>) -> Columns {
     ]
 }
 
-fn two_phases(particles: &Particles<f64, 1>, simulation: &dyn Simulation<1>, porosity: f64) -> Columns {
-    let liquid = simulation.liquid();
+fn two_phases(particles: &Particles<f64, 1>, liquid: &[PoreLiquid<f64, 1>], porosity: f64) -> Columns {
     let stress = particles.stress.iter().map(|s| s[(0, 0)]).collect();
     vec![
         ("x0[m]", particles.initial_position.iter().map(|x| x[0]).collect()),

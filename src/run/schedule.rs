@@ -1,9 +1,8 @@
 //! When the steps of a run begin and end.
 
+use super::critical_step;
 use super::error::RunError;
-use super::loads::forcing;
 use crate::scene::{Scene, StepSize};
-use crate::stepper::Simulation;
 
 /// Steps of one size; the last one is shorter where the end asks for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,14 +13,12 @@ pub(super) struct Schedule {
 }
 
 impl Schedule {
-    pub(super) fn new(scene: &Scene, simulation: &dyn Simulation<1>) -> Result<Self, RunError> {
+    pub(super) fn new(scene: &Scene) -> Result<Self, RunError> {
         let end = scene.time.end;
         match scene.time.step {
             StepSize::Fixed(dt) => Ok(Self::fixed(dt, end)),
             StepSize::Auto { safety } => {
-                let held = forcing(scene, 0.0, 1.0)?;
-                let critical = simulation.critical_step(&held).ok_or(RunError::NoCriticalStep)?;
-                let critical = critical.step;
+                let critical = critical_step(scene)?.ok_or(RunError::NoCriticalStep)?.step;
                 let steps = (end / (safety * critical)).ceil().max(1.0);
                 Ok(Self {
                     steps: steps as usize,

@@ -1,7 +1,7 @@
 //! Scenes that are compiled in.
 
 /// Names and texts; the first is the default.
-const SCENES: [(&str, &str); 9] = [
+const SCENES: [(&str, &str); 10] = [
     (
         "vibrating-bar-large",
         include_str!("../../examples/scenes/vibrating-bar-large.toml"),
@@ -9,6 +9,10 @@ const SCENES: [(&str, &str); 9] = [
     (
         "vibrating-bar-small",
         include_str!("../../examples/scenes/vibrating-bar-small.toml"),
+    ),
+    (
+        "vibrating-bar-period",
+        include_str!("../../examples/scenes/vibrating-bar-period.toml"),
     ),
     (
         "column-compaction",

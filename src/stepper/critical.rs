@@ -58,16 +58,23 @@ where
     /// With a liquid that flows the same iteration, with unit density and modulus, gives what grid, basis, reconstruction and
     /// layout contribute, and the two-phase problem is solved with it for every particle's material; the least step counts.
     pub fn critical_step(&self, forcing: &Forcing<T, D>) -> Option<CriticalStep<T>> {
-        let mut probe = self.clone();
+        self.clone().into_critical_step(forcing)
+    }
+
+    /// [`Stepper::critical_step`] without a copy; the stepper is used up.
+    pub fn into_critical_step(mut self, forcing: &Forcing<T, D>) -> Option<CriticalStep<T>> {
         if P::FLOWS {
-            probe.particles.mass.clone_from(&self.particles.volume);
-            let geometry = probe.largest_eigenvalue(forcing, T::one())?;
+            let unit_density = self.particles.volume.clone();
+            let mass = std::mem::replace(&mut self.particles.mass, unit_density);
+            let geometry = self.largest_eigenvalue(forcing, T::one())?;
+            self.particles.mass = mass;
             let steps = (0..self.particles.len()).map(|p| self.coupled(p).critical_step(geometry));
             return steps
                 .flatten()
                 .min_by(|a, b| a.step.primal().total_cmp(&b.step.primal()));
         }
-        let eigenvalue = probe.largest_eigenvalue(forcing, self.largest_wave_speed())?;
+        let speed = self.largest_wave_speed();
+        let eigenvalue = self.largest_eigenvalue(forcing, speed)?;
         Some(CriticalStep {
             step: T::lit(2.0) / eigenvalue.sqrt(),
             mechanism: Mechanism::Wave,
@@ -104,11 +111,11 @@ where
         }
     }
 
-    /// Largest eigenvalue of the map, `None` if it is nothing to a wave of the given `speed`; the stepper is used up.
-    fn largest_eigenvalue(mut self, forcing: &Forcing<T, D>, speed: T) -> Option<T> {
+    /// Largest eigenvalue of the map, `None` if it is nothing to a wave of the given `speed`; velocities and DOFs are used up.
+    fn largest_eigenvalue(&mut self, forcing: &Forcing<T, D>, speed: T) -> Option<T> {
         let across = speed / self.grid.cell_size().min();
         let least = across * across * T::lit(ROUND_OFF);
-        let probe = &mut self;
+        let probe = self;
         probe.prepare();
         probe.lump_mass();
         let rest = at_rest(forcing);

@@ -161,7 +161,7 @@ where
     pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
         let Setup {
             grid,
-            mut basis,
+            basis,
             reconstruction,
             law,
             phase,
@@ -177,14 +177,12 @@ where
         for point in &surface {
             point.validate::<D>(particles.len())?;
         }
-        let bins =
-            Bins::new(&grid, &particles.position).map_err(|Outside(particle)| SetupError::Outside {
+        let bins = Bins::without_lists(&grid, &particles.position).map_err(|Outside(particle)| {
+            SetupError::Outside {
                 particle,
                 position: values(&particles.position[particle]),
-            })?;
-        if B::TAKES_IN_CELLS {
-            basis.take_in(&grid, &bins);
-        }
+            }
+        })?;
         // Overwritten walls would tear at an acceleration that knows nothing of them.
         let velocity_mass = match R::PARTICLE_MATRIX {
             true => VelocityMass::Constrained,
@@ -205,7 +203,7 @@ where
         let surface_count = surface.len();
         let spans = Spans::new(particles.len());
         let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
-        Ok(Self {
+        let mut stepper = Self {
             grid,
             basis,
             reconstruction,
@@ -226,7 +224,28 @@ where
             time: T::zero(),
             steps: 0,
             diagnostics: Diagnostics::new(mass, P::FLOWS),
-        })
+        };
+        stepper.allocate();
+        Ok(stepper)
+    }
+
+    /// Lets reconstruction and basis see the particles and stream the widest values once, so that all they allocate is there
+    /// before the first step: [`Stepper::bytes`] is right from the start.
+    fn allocate(&mut self) {
+        self.prepare();
+        if !P::FLOWS && (R::PLAIN || R::BY_CELLS) {
+            self.spans.allocate(R::BY_CELLS);
+        }
+        if R::AMOUNTS_AT_PARTICLES {
+            return;
+        }
+        if P::FLOWS {
+            self.map_both_before(&Forcing::none());
+            self.liquid.velocity.fill(SVector::zeros());
+        } else {
+            self.map_momentum();
+        }
+        self.dofs.velocity.fill(SVector::zeros());
     }
 
     /// One step of size `dt` (s) under `forcing`, the loads and boundary values of this step.
@@ -387,17 +406,22 @@ where
         &self.diagnostics
     }
 
-    /// Bytes in use for each particle: its data, its place in the bins, and its share of the reconstruction's
-    /// and the DOFs' arrays.
-    pub fn bytes_per_particle(&self) -> f64 {
-        let shared = self.reconstruction.bytes()
+    /// Bytes allocated: particles, their cells, what basis and reconstruction hold, DOFs. Steps allocate nothing beyond.
+    pub fn bytes(&self) -> usize {
+        let both = size_of::<T>() + size_of::<liquid::Sums<T, D>>() + 2 * size_of::<SVector<T, D>>();
+        self.particles.bytes()
+            + self.bins.bytes()
+            + self.basis.bytes()
+            + self.reconstruction.bytes()
             + self.dofs.bytes()
             + self.liquid.bytes()
-            + (size_of::<T>() + size_of::<liquid::Sums<T, D>>() + 2 * size_of::<SVector<T, D>>())
-                * self.drag.len();
-        let own =
-            Particles::<T, D, L::State, P::Particle>::bytes_per_particle() + Bins::<D>::bytes_per_particle();
-        own as f64 + shared as f64 / self.particles.len() as f64
+            + self.spans.bytes()
+            + both * self.drag.len()
+    }
+
+    /// [`Stepper::bytes`] over the number of particles.
+    pub fn bytes_per_particle(&self) -> f64 {
+        self.bytes() as f64 / self.particles.len() as f64
     }
 }
 

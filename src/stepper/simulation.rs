@@ -25,6 +25,9 @@ pub trait Simulation<const D: usize> {
     /// A copy of the particles, without the law's and the second phase's data.
     fn particles(&self) -> Particles<f64, D>;
 
+    /// The particles and their liquid without a copy (in `f64`); everything else is given up.
+    fn into_particles(self: Box<Self>) -> (Particles<f64, D>, Vec<PoreLiquid<f64, D>>);
+
     /// The liquid of every particle; empty where none flows.
     fn liquid(&self) -> Vec<PoreLiquid<f64, D>>;
 
@@ -36,6 +39,9 @@ pub trait Simulation<const D: usize> {
 
     /// See [`Stepper::critical_step`].
     fn critical_step(&self, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>>;
+
+    /// See [`Stepper::into_critical_step`].
+    fn into_critical_step(self: Box<Self>, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>>;
 
     /// Number of particles.
     fn particle_count(&self) -> usize;
@@ -61,6 +67,13 @@ where
 
     fn particles(&self) -> Particles<f64, D> {
         self.particles.cast()
+    }
+
+    fn into_particles(self: Box<Self>) -> (Particles<f64, D>, Vec<PoreLiquid<f64, D>>) {
+        let liquid = Simulation::liquid(self.as_ref());
+        // The DOFs' arrays and the reconstruction's are freed before the particles may be copied.
+        let Self { particles, .. } = *self;
+        (particles.into_cast(), liquid)
     }
 
     fn liquid(&self) -> Vec<PoreLiquid<f64, D>> {
@@ -104,9 +117,11 @@ where
     }
 
     fn critical_step(&self, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>> {
-        let CriticalStep { step, mechanism } = self.critical_step(&cast_forcing(forcing))?;
-        let step = step.primal();
-        Some(CriticalStep { step, mechanism })
+        self.critical_step(&cast_forcing(forcing)).map(cast_critical)
+    }
+
+    fn into_critical_step(self: Box<Self>, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>> {
+        Stepper::into_critical_step(*self, &cast_forcing(forcing)).map(cast_critical)
     }
 
     fn particle_count(&self) -> usize {
@@ -120,6 +135,12 @@ where
     fn bytes_per_particle(&self) -> f64 {
         self.bytes_per_particle()
     }
+}
+
+fn cast_critical<T: Scalar>(critical: CriticalStep<T>) -> CriticalStep<f64> {
+    let CriticalStep { step, mechanism } = critical;
+    let step = step.primal();
+    CriticalStep { step, mechanism }
 }
 
 fn cast_conservation<T: Scalar>(errors: &Conservation<T>) -> Conservation<f64> {

@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::diagnostics::Sums;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
-use crate::parallel::{CELLS, PARTICLES, SpanWindow, many_threads};
+use crate::parallel::{CELLS, PARTICLES, SpanWindow, fit, many_threads};
 use crate::particles::Bins;
 use crate::scalar::Scalar;
 
@@ -94,6 +94,22 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
                 bounds.map(|(low, high)| window(basis, grid, low, high)),
             );
         }
+    }
+
+    /// Allocates what passes over particles, and over cells, will need.
+    pub(super) fn allocate(&mut self, cells: bool) {
+        fit(&self.particles, &mut self.scalars, 1);
+        let longest = if cells { &self.cells } else { &self.particles };
+        fit(longest, &mut self.vectors, 1);
+    }
+
+    /// Bytes allocated.
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<SpanWindow>() * (self.particles.capacity() + self.cells.capacity())
+            + size_of::<T>() * (self.scalars.capacity() + self.matrices.capacity())
+            + size_of::<SVector<T, D>>() * self.vectors.capacity()
+            + size_of::<Sums<T, D>>() * self.sums.capacity()
+            + size_of::<Moved<T>>() * self.moved.capacity()
     }
 
     /// The particles' momentum, added up span by span.

@@ -48,3 +48,18 @@ fn nine_methods_keep_their_orders_over_a_period() {
         }
     }
 }
+
+/// The scene for studies runs an eighth longer, so that errors can be relative to something. Errors: measured with this code,
+/// in `docs/speed-and-error.md`.
+#[test]
+fn the_scene_of_one_period_follows_nine_eighths_of_it() {
+    let period = 2.0 * (2e3_f64 / 7e6).sqrt();
+    for (cells, expected) in [(10, 6.90e-2), (20, 1.88e-2)] {
+        let cells = format!("grid.cells=[{cells}]");
+        let found = summary("vibrating-bar-period", Method::new(BSPLINE, TAYLOR), &[&cells]);
+        assert_eq!(found.steps, 9000);
+        assert!((found.time / period - 1.125).abs() < 1e-12, "{}", found.time);
+        let error = found.errors["stress"].relative_l2;
+        assert!((error / expected - 1.0).abs() < 0.05, "{cells}: {error:e}");
+    }
+}

@@ -161,16 +161,23 @@ fn after_200_steps<P: Phase<f64, 1>>(
     parts.flat_map(|((x, v), s)| [x[0], v[0], s[(0, 0)]]).collect()
 }
 
+/// Largest difference relative to the larger of the two values.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    let pairs = a.iter().zip(b);
+    let each = pairs.map(|(a, b)| (a - b).abs() / a.abs().max(b.abs()).max(f64::MIN_POSITIVE));
+    each.fold(0.0, f64::max)
+}
+
+/// The streams are the same to the bit (unit tests of `SubPoints`); plain MPM adds them up in another order.
 #[test]
-fn one_sub_point_is_plain_dual_domain_to_the_bit() {
+fn one_sub_point_is_plain_dual_domain() {
+    const ROUND_OFF: f64 = 1e-11;
     let sealed = PoreCondition::Sealed;
     let plain = after_200_steps(Shepard, OnePhase, 2e3, sealed);
     let single = after_200_steps(SubPoints::default(), OnePhase, 2e3, sealed);
-    assert_eq!(plain, single);
-    assert_ne!(
-        plain,
-        after_200_steps(SubPoints::new(2).unwrap(), OnePhase, 2e3, sealed)
-    );
+    assert!(difference(&plain, &single) < ROUND_OFF);
+    let two = after_200_steps(SubPoints::new(2).unwrap(), OnePhase, 2e3, sealed);
+    assert!(difference(&plain, &two) > 1e3 * ROUND_OFF);
     let soil = TwoPhase {
         porosity: 0.4,
         solid_density: 2650.0,
@@ -183,8 +190,6 @@ fn one_sub_point_is_plain_dual_domain_to_the_bit() {
     };
     let (density, drained) = (soil.dry_density(), PoreCondition::Pressure(0.0));
     let plain = after_200_steps(Shepard, soil, density, drained);
-    assert_eq!(
-        plain,
-        after_200_steps(SubPoints::default(), soil, density, drained)
-    );
+    let single = after_200_steps(SubPoints::default(), soil, density, drained);
+    assert!(difference(&plain, &single) < ROUND_OFF);
 }

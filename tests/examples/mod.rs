@@ -6,6 +6,8 @@ mod fit_field;
 mod own_basis;
 #[path = "../../examples/own_law.rs"]
 mod own_law;
+#[path = "../../examples/speed_and_error.rs"]
+mod speed_and_error;
 #[path = "../../examples/sub_points.rs"]
 mod sub_points;
 #[path = "../../examples/vibrating_bar.rs"]
@@ -80,4 +82,63 @@ fn the_own_basis_is_told_what_it_lacks() {
     let claims = BasisClaims::of_degree(2);
     let failure = check_basis(&own_basis::UniformQuadratic, &grid, &points, &claims).unwrap_err();
     assert_eq!(failure.property, Property::FaceValues);
+}
+
+/// The page's program keeps the prose and fills the part between the markers; its picture is light enough for the repository.
+#[test]
+fn a_part_of_the_page_on_speed_and_error_is_written_anew() {
+    use materialpoint::output::Folder;
+    use speed_and_error::{Care, Case, report};
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("speed-and-error");
+    let case = Case {
+        scene: "vibrating-bar-small",
+        cells: &[5, 10],
+        limits: &[0.01],
+    };
+    let care = Care {
+        repeat: 1,
+        least_seconds: 0.0,
+    };
+    let [begin, end] = ["begin", "end"].map(|side| format!("<!-- {side} vibrating-bar-small -->"));
+    let page = format!("Above.\n{begin}\nold\n{end}\nBelow.\n");
+    let page = report(&page, &case, care, &Folder::create(&path).unwrap()).unwrap();
+    assert!(page.starts_with(&format!("Above.\n{begin}\n![")), "{page}");
+    assert!(page.ends_with(&format!("\n{end}\nBelow.\n")), "{page}");
+    assert!(
+        !page.contains("old") && page.contains("study vibrating-bar-small --cells 5,10`"),
+        "{page}"
+    );
+    assert!(
+        page.contains("| BSMPM + TLS | 10 |") && page.contains("* For a stress error below 1 %"),
+        "{page}"
+    );
+    let picture = std::fs::read_to_string(path.join("speed-vibrating-bar-small.svg")).unwrap();
+    assert!(
+        picture.contains("BSMPM + relaxed TLS") && picture.len() < 100_000,
+        "{}",
+        picture.len()
+    );
+}
+
+/// The page has a place for every case and for the growth of cost, and the pictures that it shows are there.
+#[test]
+fn the_page_on_speed_and_error_is_complete() {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let page = std::fs::read_to_string(docs.join("speed-and-error.md")).unwrap();
+    let names = speed_and_error::CASES.map(|case| case.scene);
+    for name in names.into_iter().chain(["growth"]) {
+        materialpoint::output::fill_in(&page, name, "").unwrap();
+    }
+    let pictures: Vec<&str> = page
+        .split("](pictures/")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next())
+        .collect();
+    assert_eq!(pictures.len(), names.len() + 1);
+    for picture in pictures {
+        let size = std::fs::metadata(docs.join("pictures").join(picture))
+            .unwrap()
+            .len();
+        assert!(size < 100_000, "{picture}: {size} bytes");
+    }
 }

@@ -147,4 +147,5 @@ fn what_cannot_be_drawn_is_counted() {
 fn a_million_particles_make_a_small_picture() {
     let particles: Vec<(f64, f64)> = (0..1_000_000).map(|i| (f64::from(i) * 1e-6, 1.0)).collect();
     assert!(draw_fields("t", "x [m]", &[panel(&particles, &[])]).len() < 300_000);
+    assert!(draw_fields("t", "x [m]", &[panel(&[], &particles)]).len() < 100_000);
 }

@@ -25,7 +25,7 @@ where
 {
     /// DOF velocities of both phases at the step's start. The masses of the mapping serve again after the update: nothing has
     /// moved by then.
-    pub(super) fn map_both_before(&mut self, forcing: &Forcing<T, D>) {
+    pub(in super::super) fn map_both_before(&mut self, forcing: &Forcing<T, D>) {
         if !R::AMOUNTS_AT_PARTICLES {
             self.clear_momenta();
             match self.velocity_mass {

@@ -1,0 +1,129 @@
+//! `bytes_per_particle`, which `check` prints, against what the allocator was asked for.
+
+use allocation_counter::measure;
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::{Basis, Method, ReconstructionKind};
+use materialpoint::phase::Drag;
+use materialpoint::run::{run, simulation};
+use materialpoint::scene::Scene;
+use materialpoint::stepper::{Forcing, Simulation};
+
+use crate::two_phase::column::{AT_REST, Column, loaded, table_6};
+
+const CELLS: usize = 2000;
+
+fn scene(method: Method, per_cell: usize) -> Scene {
+    let text = Scene::builtin("vibrating-bar-large").unwrap();
+    let overrides = [
+        format!("grid.cells=[{CELLS}]"),
+        format!("body.0.particles_per_cell=[{per_cell}]"),
+        "time={ step = 1e-7, end = 2e-7 }".to_owned(),
+    ];
+    Scene::from_toml(text, &overrides).unwrap().with_method(method)
+}
+
+/// What was allocated and not freed by `build`, over what the stepper says; then steps, which must add nothing. On one thread:
+/// rayon itself may allocate when it wakes others.
+fn actual_over_said(
+    build: impl FnOnce() -> Box<dyn Simulation<1>> + Send,
+    forcing: &Forcing<f64, 1>,
+    dt: f64,
+) -> f64 {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| measured(build, forcing, dt))
+}
+
+fn measured(build: impl FnOnce() -> Box<dyn Simulation<1>>, forcing: &Forcing<f64, 1>, dt: f64) -> f64 {
+    let mut built = None;
+    let allocated = measure(|| built = Some(build())).bytes_current as f64;
+    let mut simulation = built.unwrap();
+    let said = simulation.bytes_per_particle() * simulation.particle_count() as f64;
+    let stepping = measure(|| simulation.step(dt, forcing).unwrap());
+    assert_eq!(stepping.count_total, 0);
+    assert_eq!(
+        simulation.bytes_per_particle() * simulation.particle_count() as f64,
+        said
+    );
+    allocated / said
+}
+
+#[test]
+fn a_stepper_takes_what_it_says() {
+    for method in Method::ALL {
+        for per_cell in [2, 16] {
+            let scene = scene(method, per_cell);
+            let ratio = actual_over_said(|| simulation(&scene).unwrap(), &Forcing::none(), 1e-7);
+            assert!(
+                (ratio - 1.0).abs() < 0.01,
+                "{method}, {per_cell} per cell: {ratio}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_two_phase_stepper_takes_what_it_says() {
+    let (soil, law) = table_6(1e-4);
+    for method in Method::NINE {
+        for mass in [VelocityMass::Consistent, VelocityMass::Lumped] {
+            let column = Column {
+                cells: CELLS,
+                per_cell: 4,
+                soil,
+                law,
+                drag: Drag::Implicit,
+                mass,
+                surface: true,
+            };
+            let ratio = actual_over_said(|| column.build(method, |_| AT_REST), &loaded(-1e4), 1e-9);
+            assert!((ratio - 1.0).abs() < 0.01, "{method} {mass:?}: {ratio}");
+        }
+    }
+}
+
+/// Seven numbers (two positions, displacement, velocity, stress, mass, volume), the number of the cell, and three
+/// numbers a DOF (mass, force, momentum): no lists of cells, no matrix, no liquid. Many particles are passed over in spans of
+/// 4096, whose sums take two numbers a DOF and little for each span.
+#[test]
+fn plain_one_phase_elasticity_carries_nothing_that_it_does_not_use() {
+    let method = Method::new(Basis::Linear, ReconstructionKind::Shepard);
+    let built = simulation(&scene(method, 8)).unwrap();
+    let (particles, dofs) = (8 * CELLS, CELLS + 1);
+    assert_eq!((built.particle_count(), built.dof_count()), (particles, dofs));
+    let bytes = (particles * (7 * 8 + 4) + dofs * 3 * 8) as f64;
+    let spans = particles.div_ceil(4096);
+    let sums = (2 * 8 * (dofs + 10 * spans) + 100 * spans) as f64;
+    let found = built.bytes_per_particle() * particles as f64;
+    assert!((bytes..=bytes + sums).contains(&found), "{found} {bytes} {sums}");
+}
+
+/// Setting up needs no more than stepping: particles are moved to the stepper, not copied.
+#[test]
+fn setting_up_needs_no_second_copy() {
+    for method in Method::ALL {
+        let scene = scene(method, 8);
+        let mut built = None;
+        let peak = measure(|| built = Some(simulation(&scene).unwrap())).bytes_max as f64;
+        let built = built.unwrap();
+        let said = built.bytes_per_particle() * built.particle_count() as f64;
+        assert!(peak < 1.1 * said, "{method}: {}", peak / said);
+    }
+}
+
+/// Nor does a whole run until its errors are computed: then the reference joins the particles, when all else is gone.
+#[test]
+fn a_run_holds_one_copy_of_its_particles() {
+    for method in Method::ALL {
+        let scene = scene(method, 8);
+        let mut outcome = None;
+        let peak = measure(|| outcome = Some(run(&scene, None, &mut |_| {}).unwrap())).bytes_max as f64;
+        let summary = outcome.unwrap().summary;
+        let stepping = summary.bytes_per_particle * summary.particles as f64;
+        // Particles, the reference's fields, one field of each at a time.
+        let reporting = ((7 + 3 + 2) * 8 * summary.particles) as f64;
+        assert!(
+            peak < 1.1 * stepping.max(reporting),
+            "{method}: {peak} {stepping} {reporting}"
+        );
+    }
+}
