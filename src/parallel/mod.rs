@@ -33,8 +33,15 @@ fn halve<W: Sliced>(parallel: bool, span: usize, first: usize, work: W, f: &(imp
     let (mut left, mut right) = (Some(left), Some(right));
     both(
         parallel,
-        &mut || left.take().map_or((), |work| halve(parallel, span, first, work, f)),
-        &mut || right.take().map_or((), |work| halve(parallel, span, middle, work, f)),
+        &mut || {
+            left.take()
+                .map_or((), |work| halve(parallel, span, first, work, f))
+        },
+        &mut || {
+            right
+                .take()
+                .map_or((), |work| halve(parallel, span, middle, work, f))
+        },
     );
 }
 

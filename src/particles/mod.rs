@@ -8,9 +8,9 @@ mod movable;
 pub(crate) use bins::relocate;
 pub use bins::{Bins, Outside};
 pub use lattice::lattice;
-pub(crate) use movable::{Movable, Movables};
 #[cfg(feature = "scene")]
 pub(crate) use lattice::lattice_points;
+pub(crate) use movable::{Movable, Movables};
 
 use nalgebra::{SMatrix, SVector};
 

@@ -233,8 +233,8 @@ where
     /// before the first step: [`Stepper::bytes`] is right from the start.
     fn allocate(&mut self) {
         self.prepare();
-        if !P::FLOWS && (R::PLAIN || R::BY_CELLS) {
-            self.spans.allocate(R::BY_CELLS);
+        if !P::FLOWS {
+            self.spans.allocate(R::PLAIN, R::BY_CELLS);
         }
         if R::AMOUNTS_AT_PARTICLES {
             return;

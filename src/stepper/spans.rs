@@ -96,11 +96,15 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
         }
     }
 
-    /// Allocates what passes over particles, and over cells, will need.
-    pub(super) fn allocate(&mut self, cells: bool) {
+    /// Allocates what passes will need: sums of vectors over particles, over cells, or neither.
+    pub(super) fn allocate(&mut self, particles: bool, cells: bool) {
         fit(&self.particles, &mut self.scalars, 1);
-        let longest = if cells { &self.cells } else { &self.particles };
-        fit(longest, &mut self.vectors, 1);
+        if particles {
+            fit(&self.particles, &mut self.vectors, 1);
+        }
+        if cells {
+            fit(&self.cells, &mut self.vectors, 1);
+        }
     }
 
     /// Bytes allocated.
