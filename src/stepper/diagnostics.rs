@@ -76,6 +76,18 @@ impl<T: Scalar> Diagnostics<T> {
     pub(super) fn record<const D: usize>(&mut self, particles: &Sums<T, D>, mapped: MassMomentum<T, D>) {
         self.conservation.record(self.total_mass, particles, mapped);
     }
+
+    /// Compares the mapped totals of both phases with those of the particles.
+    pub(super) fn record_both<const D: usize>(
+        &mut self,
+        totals: &Totals<T, D>,
+        [solid, liquid]: [MassMomentum<T, D>; 2],
+    ) {
+        self.record(&totals.solid, solid);
+        if let Some(errors) = &mut self.liquid_conservation {
+            errors.record(totals.liquid_mass, &totals.liquid, liquid);
+        }
+    }
 }
 
 /// Momentum of the particles, and the sum of its sizes.
@@ -106,12 +118,30 @@ impl<T: Scalar, const D: usize> Sums<T, D> {
         self.scale += other.scale;
         self
     }
+}
 
+/// Of both phases.
+pub(super) struct Totals<T, const D: usize> {
+    solid: Sums<T, D>,
+    liquid: Sums<T, D>,
+    liquid_mass: T,
+}
+
+impl<T: Scalar, const D: usize> Totals<T, D> {
+    pub(super) fn zero() -> Self {
+        Self {
+            solid: Sums::zero(),
+            liquid: Sums::zero(),
+            liquid_mass: T::zero(),
+        }
+    }
+
+    /// Adds the momenta and the liquid's mass of one particle.
     #[inline(always)]
-    fn of(momenta: impl Iterator<Item = SVector<T, D>>) -> Self {
-        let mut sums = Self::zero();
-        momenta.for_each(|part| sums.add(part));
-        sums
+    pub(super) fn add(&mut self, solid: SVector<T, D>, liquid: SVector<T, D>, liquid_mass: T) {
+        self.solid.add(solid);
+        self.liquid.add(liquid);
+        self.liquid_mass += liquid_mass;
     }
 }
 
@@ -140,28 +170,6 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
-    /// Compares the mapped totals of both phases with those of the particles.
-    pub(super) fn record_both(&mut self, [solid, liquid]: [MassMomentum<T, D>; 2]) {
-        let (particles, phase) = (&self.particles, &self.phase);
-        let momenta = particles
-            .mass
-            .iter()
-            .zip(&particles.velocity)
-            .map(|(&m, v)| v * m);
-        self.diagnostics.record(&Sums::of(momenta), solid);
-        let Some(errors) = &mut self.diagnostics.liquid_conservation else {
-            return;
-        };
-        let mut total = T::zero();
-        let momenta = (0..particles.len()).map(|p| {
-            let mass = phase.liquid_mass(particles.volume[p]);
-            total += mass;
-            phase.liquid(&particles.phase[p]).velocity * mass
-        });
-        let sums = Sums::of(momenta);
-        errors.record(total, &sums, liquid);
-    }
-
     /// Kinetic and strain energy of the particles as they are, the liquid's included.
     pub fn energy(&self) -> Energy<T> {
         let particles = &self.particles;

@@ -32,6 +32,7 @@ pub use forcing::{FaceCondition, Forcing, PoreCondition, SurfacePoint};
 pub use simulation::Simulation;
 
 use nalgebra::SVector;
+use num_traits::Zero;
 
 use crate::basis::BasisFamily;
 use crate::error::{SetupError, StepError};
@@ -270,8 +271,7 @@ where
         self.steps += 1;
         self.time += dt;
         if P::FLOWS {
-            self.advance_both(dt)?;
-            self.relocate()
+            self.advance_both(dt)
         } else {
             self.advance(dt)
         }
@@ -335,18 +335,6 @@ where
         let p = point.particle;
         let (x, volume) = (&self.particles.position[p], self.particles.volume[p]);
         point.position(&self.grid, self.bins.cell_of(p), x, volume)
-    }
-
-    /// Looks the cells of the moved particles up.
-    fn relocate(&mut self) -> Result<(), StepError> {
-        match self.bins.locate(&self.grid, &self.particles.position) {
-            Ok(crossings) => {
-                self.spans.stale |= crossings > 0;
-                self.diagnostics.grid_crossings += crossings;
-                Ok(())
-            }
-            Err(Outside(particle)) => Err(self.left(particle)),
-        }
     }
 
     fn left(&self, particle: usize) -> StepError {

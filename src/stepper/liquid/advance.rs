@@ -6,6 +6,7 @@ use super::super::Stepper;
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::law::ConstitutiveLaw;
+use crate::particles::relocate;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -23,7 +24,8 @@ where
     pub(in super::super) fn advance_both(&mut self, dt: T) -> Result<(), StepError> {
         let (basis, grid, law, phase) = (&self.basis, &self.grid, &self.law, &self.phase);
         let (motion, steps) = (&self.motion[..], self.steps);
-        let places = self.bins.cells().iter();
+        let (mut crossings, mut left) = (0, None);
+        let places = self.bins.cells_mut().iter_mut();
         for (p, (mut particle, cell)) in self.particles.movable().each().zip(places).enumerate() {
             let mut v = SVector::zeros();
             let mut gradient = SMatrix::<T, D, D>::zeros();
@@ -48,7 +50,17 @@ where
             particle
                 .advance(law, &(v * dt), &increment)
                 .map_err(|volume| StepError::volume(steps, p, volume))?;
+            match relocate(grid, cell, particle.position) {
+                Some(crossed) => crossings += usize::from(crossed),
+                None => {
+                    left = Some(p);
+                    break;
+                }
+            }
         }
-        Ok(())
+        self.diagnostics.grid_crossings += crossings;
+        self.bins.note_crossings(crossings);
+        self.spans.stale |= crossings > 0;
+        left.map_or(Ok(()), |p| Err(self.left(p)))
     }
 }

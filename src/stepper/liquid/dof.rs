@@ -1,6 +1,9 @@
 //! What is summed and read at one DOF, side by side: the particles' loops touch one place in memory per DOF.
 
+use std::ops::Add;
+
 use nalgebra::SVector;
+use num_traits::Zero;
 
 use super::super::{Dofs, Stepper};
 use crate::law::ConstitutiveLaw;
@@ -18,8 +21,25 @@ pub(in super::super) struct Sums<T, const D: usize> {
     pub(super) forces: [SVector<T, D>; 2],
 }
 
-impl<T: Scalar, const D: usize> Sums<T, D> {
-    pub(in super::super) fn zero() -> Self {
+impl<T: Scalar, const D: usize> Add for Sums<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let both = |a: [SVector<T, D>; 2], b: [SVector<T, D>; 2]| [a[0] + b[0], a[1] + b[1]];
+        Self {
+            solid_mass: self.solid_mass + other.solid_mass,
+            liquid_mass: self.liquid_mass + other.liquid_mass,
+            drag: self.drag + other.drag,
+            momenta: both(self.momenta, other.momenta),
+            forces: both(self.forces, other.forces),
+        }
+    }
+}
+
+impl<T: Scalar, const D: usize> Zero for Sums<T, D> {
+    #[inline(always)]
+    fn zero() -> Self {
         Self {
             solid_mass: T::zero(),
             liquid_mass: T::zero(),
@@ -27,6 +47,13 @@ impl<T: Scalar, const D: usize> Sums<T, D> {
             momenta: [SVector::zeros(); 2],
             forces: [SVector::zeros(); 2],
         }
+    }
+
+    fn is_zero(&self) -> bool {
+        self.solid_mass.is_zero()
+            && self.liquid_mass.is_zero()
+            && self.drag.is_zero()
+            && self.momenta.iter().chain(&self.forces).all(SVector::is_zero)
     }
 }
 

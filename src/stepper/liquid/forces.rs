@@ -1,7 +1,9 @@
 //! Lumped masses, drag and forces of both phases.
 
 use nalgebra::SVector;
+use num_traits::Zero;
 
+use super::super::cell_sums::CellSums;
 use super::super::{Forcing, Stepper, cloud};
 use super::dof::Sums;
 use super::surface::EvenLoad;
@@ -69,24 +71,28 @@ where
         self.sums.fill(Sums::zero());
         let (basis, grid, phase, sums) = (&self.basis, &self.grid, &self.phase, &mut self.sums);
         let particles = &self.particles;
-        for (p, x) in particles.position.iter().enumerate() {
-            let (m_s, volume) = (particles.mass[p], particles.volume[p]);
+        let mut at_hand = CellSums::new(basis, grid);
+        let mut sink = |i: usize, part| sums[i] = sums[i] + part;
+        let bodies = particles.mass.iter().zip(&particles.volume);
+        let motion = particles.velocity.iter().zip(&particles.stress);
+        let places = particles.position.iter().zip(self.bins.cells());
+        for ((((x, cell), (&m_s, &volume)), (velocity, stress)), data) in
+            places.zip(bodies).zip(motion).zip(&particles.phase)
+        {
             let (m_w, d) = (phase.liquid_mass(volume), phase.drag(m_s, volume));
-            let liquid = phase.liquid(&particles.phase[p]);
-            let (q_s, q_w) = (particles.velocity[p] * m_s, liquid.velocity * m_w);
-            let Pair(total, pressure) = even.rest(phase, &particles.stress[p], &particles.phase[p]);
-            let (total, pressure) = (total * volume, pressure * volume);
-            basis.for_each(grid, self.bins.cell_of(p), x, |i, phi, gradient| {
-                let sums = &mut sums[i];
-                sums.solid_mass += m_s * phi;
-                sums.liquid_mass += m_w * phi;
-                sums.drag += d * phi;
-                sums.momenta[0] += q_s * phi;
-                sums.momenta[1] += q_w * phi;
-                sums.forces[0] -= total * gradient;
-                sums.forces[1] -= gradient * pressure;
-            });
+            let (q_s, q_w) = (velocity * m_s, phase.liquid(data).velocity * m_w);
+            let Pair(total, pressure) = even.rest(phase, stress, data);
+            let (total, pressure) = (total * -volume, pressure * -volume);
+            let part = |phi, gradient| Sums {
+                solid_mass: m_s * phi,
+                liquid_mass: m_w * phi,
+                drag: d * phi,
+                momenta: [q_s * phi, q_w * phi],
+                forces: [total * gradient, gradient * pressure],
+            };
+            at_hand.add(cell, x, part, &mut sink);
         }
+        at_hand.flush(&mut sink);
         self.take_sums();
     }
 

@@ -3,6 +3,8 @@
 use nalgebra::SVector;
 
 use super::super::acceleration::Walls;
+use super::super::cell_sums::CellSums;
+use super::super::diagnostics::Totals;
 use super::super::matrix::Unknown;
 use super::super::velocity::{divide, sum};
 use super::super::{Dofs, Forcing, Stepper, cloud};
@@ -39,68 +41,79 @@ where
     /// `v_p += dt sum_i phi_i(x_p) a_i` for both phases, and the DOF velocities from the updated particles.
     pub(in super::super) fn update_both_velocities(&mut self, dt: T, forcing: &Forcing<T, D>) {
         self.lay_accelerations();
-        if R::AMOUNTS_AT_PARTICLES {
-            self.accelerate_and_sum_particles(dt);
+        let totals = if R::AMOUNTS_AT_PARTICLES {
+            self.accelerate_and_sum_particles(dt)
         } else {
-            self.accelerate_particles(dt);
+            let totals = self.accelerate_particles(dt);
             self.clear_momenta();
             self.integrate_momenta();
-        }
+            totals
+        };
         let mapped = [&self.dofs, &self.liquid].map(|dofs| MassMomentum {
             mass: mapped_mass::<T, D, R>(dofs, self.velocity_mass),
             momentum: dofs.velocity.iter().fold(SVector::zeros(), |s, q| s + q),
         });
-        self.record_both(mapped);
+        self.diagnostics.record_both(&totals, mapped);
         self.divide_both(forcing, false);
         self.lay_velocities();
     }
 
     #[inline(never)]
-    fn accelerate_particles(&mut self, dt: T) {
-        let (basis, grid, phase, motion) = (&self.basis, &self.grid, &self.phase, &self.motion);
+    fn accelerate_particles(&mut self, dt: T) -> Totals<T, D> {
+        let (basis, grid, phase, motion) = (&self.basis, &self.grid, &self.phase, &self.motion[..]);
         let particles = &mut self.particles;
-        for (p, x) in particles.position.iter().enumerate() {
+        let mut totals = Totals::zero();
+        let places = particles.position.iter().zip(self.bins.cells());
+        let bodies = particles.mass.iter().zip(&particles.volume);
+        let moving = particles.velocity.iter_mut().zip(&mut particles.phase);
+        for (((x, cell), (&mass, &volume)), (velocity, data)) in places.zip(bodies).zip(moving) {
             let (mut a_s, mut a_w) = (SVector::zeros(), SVector::zeros());
-            basis.for_each(grid, self.bins.cell_of(p), x, |i, phi, _| {
+            basis.for_each(grid, cell, x, |i, phi, _| {
                 let [solid, liquid] = &motion[i];
                 a_s += solid * phi;
                 a_w += liquid * phi;
             });
-            particles.velocity[p] += a_s * dt;
-            phase.accelerate_liquid(a_w * dt, &mut particles.phase[p]);
+            *velocity += a_s * dt;
+            phase.accelerate_liquid(a_w * dt, data);
+            let m_w = phase.liquid_mass(volume);
+            totals.add(*velocity * mass, phase.liquid(data).velocity * m_w, m_w);
         }
+        totals
     }
 
     /// The same where the particles are the points of the mapping: their new momenta are summed in the same pass.
     #[inline(never)]
-    fn accelerate_and_sum_particles(&mut self, dt: T) {
-        let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
-        let (motion, sums) = (&self.motion, &mut self.sums);
-        sums.iter_mut()
-            .for_each(|sums| sums.momenta = [SVector::zeros(); 2]);
+    fn accelerate_and_sum_particles(&mut self, dt: T) -> Totals<T, D> {
+        let (basis, grid, phase, motion) = (&self.basis, &self.grid, &self.phase, &self.motion[..]);
+        let (solid, liquid) = (&mut self.dofs.velocity[..], &mut self.liquid.velocity[..]);
+        solid.fill(SVector::zeros());
+        liquid.fill(SVector::zeros());
         let particles = &mut self.particles;
-        for (p, x) in particles.position.iter().enumerate() {
+        let mut totals = Totals::zero();
+        let mut momenta = CellSums::new(basis, grid);
+        let mut sink = |i: usize, Pair(q_s, q_w)| {
+            solid[i] += q_s;
+            liquid[i] += q_w;
+        };
+        let places = particles.position.iter().zip(self.bins.cells());
+        let bodies = particles.mass.iter().zip(&particles.volume);
+        let moving = particles.velocity.iter_mut().zip(&mut particles.phase);
+        for (((x, cell), (&mass, &volume)), (velocity, data)) in places.zip(bodies).zip(moving) {
             let (mut a_s, mut a_w) = (SVector::zeros(), SVector::zeros());
-            let cell = self.bins.cell_of(p);
             basis.for_each(grid, cell, x, |i, phi, _| {
                 let [solid, liquid] = &motion[i];
                 a_s += solid * phi;
                 a_w += liquid * phi;
             });
-            let (velocity, data) = (&mut particles.velocity[p], &mut particles.phase[p]);
             *velocity += a_s * dt;
             phase.accelerate_liquid(a_w * dt, data);
-            let q_s = *velocity * particles.mass[p];
-            let q_w = phase.liquid(data).velocity * phase.liquid_mass(particles.volume[p]);
-            basis.for_each(grid, cell, x, |i, phi, _| {
-                let [solid, liquid] = &mut sums[i].momenta;
-                *solid += q_s * phi;
-                *liquid += q_w * phi;
-            });
+            let m_w = phase.liquid_mass(volume);
+            let (q_s, q_w) = (*velocity * mass, phase.liquid(data).velocity * m_w);
+            totals.add(q_s, q_w, m_w);
+            momenta.add(cell, x, |phi, _| Pair(q_s * phi, q_w * phi), &mut sink);
         }
-        for (i, sums) in sums.iter().enumerate() {
-            [self.dofs.velocity[i], self.liquid.velocity[i]] = sums.momenta;
-        }
+        momenta.flush(&mut sink);
+        totals
     }
 
     fn clear_momenta(&mut self) {
