@@ -285,7 +285,7 @@ fn conserved<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
     for k in 1..NB {
         sums[k].add_scaled(-fits.sums[k], mean);
     }
-    let mut coefficients = fits.conserved.from_sums(sums);
+    let mut coefficients = fits.conserved.coefficients_from_sums(sums);
     coefficients[0] = mean;
     coefficients
 }

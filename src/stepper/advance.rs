@@ -94,7 +94,7 @@ impl<T: Scalar, const D: usize, S: Copy, Q> Movable<'_, T, D, S, Q> {
         if law.large_strain() {
             let volume = *self.volume * determinant(&(SMatrix::identity() + increment));
             // Also refuses a volume that is not a number, or infinite.
-            if !(volume > T::zero() && volume - volume == T::zero()) {
+            if !(volume > T::zero() && (volume * T::zero()).is_zero()) {
                 return Err(volume);
             }
             *self.volume = volume;

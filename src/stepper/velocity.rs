@@ -212,12 +212,12 @@ where
     fn integrate_amounts(
         &mut self,
         width: usize,
-        mass: fn(&mut Dofs<T, D>) -> (&mut [T], &mut [SVector<T, D>]),
+        pick: PickSums<T, D>,
         add: &(impl Fn(Places<'_, T, D, B>, &Point<T, D>, Amount<T, D>, DofSums<'_, T, D>) + Sync),
     ) {
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         let amounts = amounts(&self.particles.mass, &self.particles.velocity);
-        let (mass, momentum) = mass(&mut self.dofs);
+        let (mass, momentum) = pick(&mut self.dofs);
         let places = (&self.basis, &self.grid);
         if !R::BY_CELLS {
             mass.fill(T::zero());
@@ -299,6 +299,8 @@ where
     }
 }
 
+/// The DOFs' arrays that a mapping fills: mass and momentum.
+type PickSums<T, const D: usize> = fn(&mut Dofs<T, D>) -> (&mut [T], &mut [SVector<T, D>]);
 type Places<'a, T, const D: usize, B> = (&'a B, &'a Grid<T, D>);
 type Amount<T, const D: usize> = MassMomentum<T, D>;
 

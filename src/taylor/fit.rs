@@ -189,7 +189,7 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         self.functions as usize
     }
 
-    /// Whether the points are so well spread that [`CellFit::from_sums`] loses no digits.
+    /// Whether the points are so well spread that [`CellFit::coefficients_from_sums`] loses no digits.
     #[inline(always)]
     pub fn is_well_spread(&self) -> bool {
         self.well_spread
@@ -213,7 +213,7 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
                     sums[k].add_scaled(weight * psi[k], rest);
                 }
             }
-            return self.from_sums(sums);
+            return self.coefficients_from_sums(sums);
         }
         for (s, weight, value) in samples {
             let psi = taylor_functions::<T, D, NB>(&s);
@@ -224,24 +224,24 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
                 sums[k].add_scaled(weight * pi, rest);
             }
         }
-        self.from_orthogonal_sums(sums)
+        self.orthogonal_coefficients(sums)
     }
 
     /// Coefficients from the sums of `w psi_k q` over the points. Only where [`CellFit::is_well_spread`].
     #[inline(always)]
-    pub fn from_sums<Q: Field<T>>(&self, mut sums: [Q; NB]) -> [Q; NB] {
+    pub fn coefficients_from_sums<Q: Field<T>>(&self, mut sums: [Q; NB]) -> [Q; NB] {
         for k in (1..NB).rev() {
             for j in 0..k {
                 let below = sums[j];
                 sums[k].add_scaled(self.factors[(k, j)], below);
             }
         }
-        self.from_orthogonal_sums(sums)
+        self.orthogonal_coefficients(sums)
     }
 
     /// `U^T D^-1` times the sums of `w pi_k q`.
     #[inline(always)]
-    fn from_orthogonal_sums<Q: Field<T>>(&self, sums: [Q; NB]) -> [Q; NB] {
+    fn orthogonal_coefficients<Q: Field<T>>(&self, sums: [Q; NB]) -> [Q; NB] {
         let scaled: [Q; NB] = std::array::from_fn(|k| sums[k].scaled(self.factors[(k, k)]));
         std::array::from_fn(|j| {
             let mut coefficient = scaled[j];
