@@ -52,6 +52,9 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
 
     /// Calls `f(dof, phi, grad phi)` (`grad phi` in 1/m) for every DOF whose value *or* gradient may be
     /// non-zero at the point `x` of `cell`. A DOF may come twice; its parts then add up.
+    ///
+    /// Every point of a cell must see the same DOFs in the same order: the step keeps the sums of a cell at hand while its
+    /// particles pass.
     fn for_each(
         &self,
         grid: &Grid<T, D>,
