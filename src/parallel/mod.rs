@@ -4,8 +4,8 @@
 //! the particles, its *window* of the DOFs, its partial result. What several spans contribute to is added up span by span,
 //! in order. So the result depends on where the cuts are, which is fixed, and not on who did which span.
 //!
-//! Spans are halved recursively ([`each_span`]) and shared by `rayon::join`: nothing is allocated. Without the feature `rayon`,
-//! or for one thread, the halves follow one another.
+//! Spans are halved recursively ([`each_span`]) and shared by `rayon::join`: nothing is allocated here, and little by rayon,
+//! when it wakes its threads. Without the feature `rayon`, or for one thread, the halves follow one another.
 
 mod sliced;
 mod windows;

@@ -279,7 +279,7 @@ where
 
     /// Takes in where the particles are.
     fn prepare(&mut self) {
-        let fits = !(R::FIELDS_AT_PARTICLES && R::AMOUNTS_AT_PARTICLES);
+        let fits = !R::PLAIN;
         if fits || B::TAKES_IN_CELLS {
             self.bins.list(&self.grid);
         }

@@ -14,6 +14,8 @@
 //! Round-off of the coefficients still counts the condition number of `U` twice, which the share bounds: harmless with the
 //! default of 2 %, not with a share near the machine epsilon.
 
+use std::ops::Range;
+
 use nalgebra::{SMatrix, SVector};
 
 use super::basis::taylor_sizes;
@@ -117,22 +119,24 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
     ) -> Self {
         let end = NB.min(gram.count);
         let least = gram.least::<D>(tolerance);
-        if let (true, Some(fit)) = (end == NB, Self::from_gram(gram, first, &least)) {
+        let first = first.min(end);
+        if let Some(fit) = Self::from_gram(gram, first..end, &least) {
             return fit;
         }
         let mut wanted = [false; NB];
-        wanted[first.min(end)..end].fill(true);
+        wanted[first..end].fill(true);
         Self::from_rotations(points, wanted, &least)
     }
 
     /// `L D L^T` factorisation of the Gram matrix; `None` where it loses too many digits or leaves too little of a
     /// function.
     #[inline(always)]
-    fn from_gram(gram: &Gram<T, NB>, first: usize, least: &SVector<T, NB>) -> Option<Self> {
+    fn from_gram(gram: &Gram<T, NB>, wanted: Range<usize>, least: &SVector<T, NB>) -> Option<Self> {
+        let first = wanted.start;
         let gram = &gram.products;
         // Rows of L below the diagonal, and the inverse squares on it.
         let mut l = SMatrix::<T, NB, NB>::zeros();
-        for k in first..NB {
+        for k in wanted.clone() {
             let mut left = gram[(k, k)];
             // L D, row k.
             let mut row = SVector::<T, NB>::zeros();
@@ -149,7 +153,7 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         }
         Some(Self {
             factors: inverse_below_the_diagonal(&l, first),
-            functions: (NB - first) as u32,
+            functions: wanted.len() as u32,
             well_spread: true,
         })
     }

@@ -30,6 +30,10 @@ pub enum Property {
     PointsInGrid,
     /// The number of a DOF is below the number of DOFs.
     DofInRange,
+    /// All points of a cell see the same DOFs in the same order.
+    SameDofsInCell,
+    /// The DOFs of a cell are in its [`dof_window`](crate::basis::BasisFamily::dof_window).
+    DofWindow,
     /// Values sum to one.
     PartitionOfUnity,
     /// No value is negative.
@@ -89,6 +93,8 @@ impl fmt::Display for Property {
         let words = match self {
             Self::PointsInGrid => "points lie in the grid",
             Self::DofInRange => "DOF numbers are below the number of DOFs",
+            Self::SameDofsInCell => "all points of a cell see the same DOFs in the same order",
+            Self::DofWindow => "the DOFs of a cell are in its window",
             Self::PartitionOfUnity => "values sum to one",
             Self::NonNegative => "values are not negative",
             Self::GradientSum => "gradients sum to zero",

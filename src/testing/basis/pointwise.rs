@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::cell_of;
 use super::sample::{Sample, Visitor, slope_bound, value_error};
 use crate::basis::BasisFamily;
-use crate::grid::{Face, Grid, Side};
+use crate::grid::{Cell, Face, Grid, Side};
 use crate::scalar::Scalar;
 use crate::testing::failure::{Failure, Place, Property, at_least, near};
 
@@ -17,6 +17,7 @@ pub(super) fn check<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     let cell = cell_of(grid, x)?;
     let moving = Sample::new(basis, grid, &cell, x, Visitor::Moving)?;
     let fixed = Sample::new(basis, grid, &cell, x, Visitor::Fixed)?;
+    same_dofs(basis, grid, &cell, x)?;
     let error = value_error(basis, grid);
     unity(&moving, x, error)?;
     non_negative(&moving, x, error)?;
@@ -26,6 +27,56 @@ pub(super) fn check<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     half_band(&moving, x, basis.half_band(grid))?;
     same_values(&moving, &fixed, x, error)?;
     Face::all::<D>().try_for_each(|face| on_face(basis, grid, face, x, error))
+}
+
+/// The DOFs at `x` are those at the cell's centre, one by one, and in the window of every span of cells with this one at
+/// an end.
+fn same_dofs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    basis: &B,
+    grid: &Grid<T, D>,
+    cell: &Cell<D>,
+    x: &SVector<T, D>,
+) -> Result<(), Failure> {
+    let seen_from = |x: &SVector<T, D>| {
+        let mut dofs = Vec::new();
+        basis.for_each(grid, cell, x, |dof, _, _| dofs.push(dof));
+        dofs
+    };
+    let (here, centre) = (seen_from(x), seen_from(&grid.centre(cell)));
+    let place = || Place::cell(cell);
+    near(
+        Property::SameDofsInCell,
+        place,
+        T::count(centre.len()),
+        T::count(here.len()),
+        T::zero(),
+    )?;
+    for (&a, &b) in here.iter().zip(&centre) {
+        near(
+            Property::SameDofsInCell,
+            place,
+            T::count(b),
+            T::count(a),
+            T::zero(),
+        )?;
+    }
+    let (first, last) = (grid.cell(0), grid.cell(grid.cell_count() - 1));
+    for window in [
+        basis.dof_window(grid, cell, cell),
+        basis.dof_window(grid, &first, cell),
+        basis.dof_window(grid, cell, &last),
+    ] {
+        for &dof in &here {
+            at_least(Property::DofWindow, place, T::count(window.start), T::count(dof))?;
+            at_least(
+                Property::DofWindow,
+                place,
+                T::count(dof + 1),
+                T::count(window.end),
+            )?;
+        }
+    }
+    Ok(())
 }
 
 fn unity<T: Scalar, const D: usize>(s: &Sample<T, D>, x: &SVector<T, D>, error: T) -> Result<(), Failure> {

@@ -1,5 +1,7 @@
 //! Basis families.
 
+use std::ops::Range;
+
 use materialpoint::basis::{AxisFamily, BSpline, BasisFamily, DualDomain, Linear, Row, tensor};
 use materialpoint::grid::{Cell, Face, Grid};
 use materialpoint::scalar::Scalar;
@@ -121,6 +123,10 @@ enum Mistake {
     Face,
     /// Other values at points that stand still.
     FixedValues,
+    /// Two DOFs change places in the right half of a cell.
+    Order,
+    /// A window that ends before the last DOF of a cell.
+    Window,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -144,6 +150,11 @@ impl AxisFamily<f64, 4> for Faulty {
             Mistake::Negative if cell == 1 => {
                 row.value[0] -= 1e-9;
                 row.value[1] += 1e-9;
+            }
+            Mistake::Order if unit > 0.5 => {
+                row.dof.swap(1, 2);
+                row.value.swap(1, 2);
+                row.slope.swap(1, 2);
             }
             Mistake::Range if cell + 1 == cells => row.dof[3] = cells + 1,
             Mistake::Band if cell > 0 && cell + 1 < cells => {
@@ -195,6 +206,11 @@ impl BasisFamily<f64, 1> for Faulty {
         }
     }
 
+    fn dof_window(&self, grid: &Grid<f64, 1>, first: &Cell<1>, last: &Cell<1>) -> Range<usize> {
+        let window = tensor::dof_window(self, grid, first, last);
+        window.start..window.end - usize::from(self.0 == Mistake::Window)
+    }
+
     fn for_each_on_face(&self, grid: &Grid<f64, 1>, face: Face, f: impl FnMut(usize)) {
         Linear.for_each_on_face(grid, face, f);
     }
@@ -215,6 +231,8 @@ fn mistakes_are_found_and_named() {
     assert_eq!(found(Mistake::Band), Some(Property::HalfBand));
     assert_eq!(found(Mistake::Face), Some(Property::FaceValues));
     assert_eq!(found(Mistake::FixedValues), Some(Property::FixedPointValues));
+    assert_eq!(found(Mistake::Order), Some(Property::SameDofsInCell));
+    assert_eq!(found(Mistake::Window), Some(Property::DofWindow));
 }
 
 /// The mistake at the ends is one of a claim: with the claim withdrawn, the family passes.
