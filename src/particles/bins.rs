@@ -142,6 +142,16 @@ impl<const D: usize> Bins<D> {
         &self.occupied
     }
 
+    /// Place among the occupied cells of the one with number `cell`, if it is one; found at once next to the place `near`.
+    #[inline(always)]
+    pub(crate) fn place_of(&self, cell: usize, near: usize) -> Option<usize> {
+        let at = |place: usize| self.occupied.get(place).is_some_and(|&c| c as usize == cell);
+        [near + 1, near.wrapping_sub(1)]
+            .into_iter()
+            .find(|&place| at(place))
+            .or_else(|| self.occupied.binary_search(&(cell as u32)).ok())
+    }
+
     /// Bytes allocated: per particle its cell and its place in the lists, per cell the start of its list and its place
     /// among the occupied.
     pub fn bytes(&self) -> usize {

@@ -4,6 +4,7 @@
 //! `weighted value * grad phi_i` and never knows where the points came from. Shepard streams the particles
 //! themselves, sub-points are spread over each particle's domain, Taylor least squares and the cubic spline stream Gauss points.
 
+mod gauss;
 mod patch;
 mod relaxed_taylor;
 mod shepard;
@@ -12,7 +13,7 @@ mod sub_points;
 mod taylor;
 
 pub use patch::{Cut, Patch};
-pub use relaxed_taylor::RelaxedTaylor;
+pub use relaxed_taylor::{Relaxation, RelaxedTaylor};
 pub use shepard::Shepard;
 pub use spline::CubicSpline;
 pub use sub_points::SubPoints;
@@ -174,9 +175,17 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
     }
 
     /// Moves the particles' `values` towards what the reconstruction sees of them; `weights` (masses) make the fit keep
-    /// the weighted sum. The stepper calls it for the stress, unweighted, right after the force is assembled, and for
+    /// the weighted sum. `crossed` says for each occupied cell which part of it a wave crosses in this step: the measure of time
+    /// for a relaxation. The stepper calls it for the stress, unweighted, right after the force is assembled, and for
     /// the velocity, weighted, before it is mapped to the DOFs.
-    fn relax<Q: Field<T>>(&mut self, _cloud: &Cloud<'_, T, D>, _weights: Option<&[T]>, _values: &mut [Q]) {}
+    fn relax<Q: Field<T>>(
+        &mut self,
+        _cloud: &Cloud<'_, T, D>,
+        _weights: Option<&[T]>,
+        _crossed: &[T],
+        _values: &mut [Q],
+    ) {
+    }
 
     /// Cells that hold particles but, at the last [`Reconstruction::prepare`], could not be fitted with
     /// the full set of functions.

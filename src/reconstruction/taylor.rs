@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use nalgebra::SVector;
 
+use super::gauss::GaussRule;
 use super::{Cloud, Patch, Point, Reconstruction};
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::parallel::{self, each_span};
-use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
 use crate::taylor::{CellFit, DEFAULT_TOLERANCE, Gram, taylor_functions};
 
@@ -24,25 +24,17 @@ use crate::taylor::{CellFit, DEFAULT_TOLERANCE, Gram, taylor_functions};
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct Taylor<T, const D: usize, const NB: usize> {
-    rule: Vec<Node<T, D, NB>>,
+    rule: GaussRule<T, D, NB>,
     tolerance: T,
     cells: Vec<CellFits<T, D, NB>>,
     reduced: usize,
 }
 
-/// A Gauss point of the reference cell: local coordinates, weight as share of the cell, Taylor functions.
-#[derive(Clone, Debug)]
-struct Node<T, const D: usize, const NB: usize> {
-    s: SVector<T, D>,
-    share: T,
-    psi: SVector<T, NB>,
-}
-
 /// The fits of one occupied cell and the box they cover.
 #[derive(Clone, Debug)]
-pub(super) struct CellFits<T, const D: usize, const NB: usize> {
-    pub(super) patch: Patch<T, D>,
-    pub(super) free: CellFit<T, NB>,
+struct CellFits<T, const D: usize, const NB: usize> {
+    patch: Patch<T, D>,
+    free: CellFit<T, NB>,
     conserved: CellFit<T, NB>,
     /// Sums of the Taylor functions over the particles.
     sums: SVector<T, NB>,
@@ -97,28 +89,13 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
     /// `degree + 1` beyond. Two points would make a cubic basis lose an order in the stress, because they
     /// integrate its mass matrix too crudely.
     pub fn for_degree(degree: usize) -> Self {
-        Self::with_gauss_points(if degree > 2 { degree + 1 } else { 2 })
+        Self::with_gauss_points(GaussRule::<T, D, NB>::points_for_degree(degree))
     }
 
     /// With `n >= 1` Gauss points per cell and axis. Two integrate the quadratic fit exactly.
     pub fn with_gauss_points(n: usize) -> Self {
-        let line = gauss_legendre::<T>(n.max(1));
-        let two = T::lit(2.0);
-        let rule = (0..line.len().pow(D as u32))
-            .map(|mut index| {
-                let mut share = T::one();
-                let s = SVector::from_fn(|_, _| {
-                    let (x, w) = line[index % line.len()];
-                    index /= line.len();
-                    share *= w / two;
-                    x
-                });
-                let psi = taylor_functions(&s);
-                Node { s, share, psi }
-            })
-            .collect();
         Self {
-            rule,
+            rule: GaussRule::new(n),
             tolerance: T::lit(DEFAULT_TOLERANCE),
             cells: Vec::new(),
             reduced: 0,
@@ -171,7 +148,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
     ) {
         let coefficients = self.coefficients_with_mean(cloud, value, mean);
         for (fits, coefficients) in self.cells.iter().zip(&coefficients) {
-            self.emit(&fits.patch, coefficients, &mut sink);
+            self.rule.emit(&fits.patch, coefficients, &mut sink);
         }
     }
 
@@ -186,37 +163,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
             .collect()
     }
 
-    /// Share of a function below which it is dropped.
-    pub(super) fn tolerance(&self) -> T {
-        self.tolerance
-    }
-
     /// Numbers and fits of the occupied cells, ascending.
-    pub(super) fn each_cell(
-        &self,
-        cloud: &Cloud<'_, T, D>,
-    ) -> impl Iterator<Item = (usize, &CellFits<T, D, NB>)> {
+    fn each_cell(&self, cloud: &Cloud<'_, T, D>) -> impl Iterator<Item = (usize, &CellFits<T, D, NB>)> {
         cloud.bins.occupied().iter().map(|&c| c as usize).zip(&self.cells)
-    }
-
-    #[inline(always)]
-    fn emit<Q: Field<T>>(
-        &self,
-        patch: &Patch<T, D>,
-        coefficients: &[Q; NB],
-        sink: &mut impl FnMut(&Point<T, D>, Q),
-    ) {
-        let volume = patch.volume();
-        let cell = patch.cell;
-        for node in &self.rule {
-            let mut value = Q::zero();
-            // Highest function first: the mean, usually the largest part, is rounded last.
-            for k in (0..NB).rev() {
-                value.add_scaled(node.psi[k], coefficients[k]);
-            }
-            let position = patch.position(&node.s);
-            sink(&Point { cell, position }, value.scaled(volume * node.share));
-        }
     }
 }
 
@@ -362,7 +311,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         let numbers = cloud.bins.occupied()[cells.clone()].iter();
         for (&cell, fits) in numbers.zip(&self.cells[cells]) {
             let coefficients = free(fits, cloud, cell as usize, &value);
-            self.emit(&fits.patch, &coefficients, &mut sink);
+            self.rule.emit(&fits.patch, &coefficients, &mut sink);
         }
     }
 
@@ -377,7 +326,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         let numbers = cloud.bins.occupied()[cells.clone()].iter();
         for (&cell, fits) in numbers.zip(&self.cells[cells]) {
             let coefficients = conserved(fits, cloud, cell as usize, &amount);
-            self.emit(&fits.patch, &coefficients, &mut sink);
+            self.rule.emit(&fits.patch, &coefficients, &mut sink);
         }
     }
 

@@ -97,6 +97,8 @@ where
     sums: Vec<liquid::Sums<T, D>>,
     motion: Vec<[SVector<T, D>; 2]>,
     spans: Spans<T, D>,
+    /// Part of each occupied cell that a wave crosses in this step; empty where nothing relaxes.
+    crossed: Vec<T>,
     /// DOFs of each face, in the order of [`Face::all`].
     face_dofs: Vec<Vec<u32>>,
     velocity_mass: VelocityMass,
@@ -202,6 +204,7 @@ where
             })
             .collect();
         let surface_count = surface.len();
+        let crossed_count = if R::RELAXES { grid.cell_count() } else { 0 };
         let spans = Spans::new(particles.len());
         let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
         let mut stepper = Self {
@@ -220,6 +223,7 @@ where
             sums: vec![liquid::Sums::zero(); liquid_count],
             motion: vec![[SVector::zeros(); 2]; liquid_count],
             spans,
+            crossed: Vec::with_capacity(crossed_count),
             face_dofs,
             velocity_mass,
             time: T::zero(),
@@ -298,8 +302,9 @@ where
 
     /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing has used it
     /// since), the velocity after its update and before it is mapped.
-    fn relax(&mut self) {
-        let particles = &mut self.particles;
+    fn relax(&mut self, dt: T) {
+        self.measure_crossings(dt);
+        let (crossed, particles) = (&self.crossed[..], &mut self.particles);
         let cloud = Cloud {
             grid: &self.grid,
             bins: &self.bins,
@@ -309,10 +314,28 @@ where
         };
         // The stress of a law that remembers follows from its state, or is bound to it: it must not be moved alone.
         if size_of::<L::State>() == 0 {
-            self.reconstruction.relax(&cloud, None, &mut particles.stress);
+            self.reconstruction
+                .relax(&cloud, None, crossed, &mut particles.stress);
         }
+        let mass = Some(&particles.mass[..]);
         self.reconstruction
-            .relax(&cloud, Some(&particles.mass), &mut particles.velocity);
+            .relax(&cloud, mass, crossed, &mut particles.velocity);
+    }
+
+    /// Part of each occupied cell that a wave crosses in a step, at the cell's first particle.
+    fn measure_crossings(&mut self, dt: T) {
+        let (law, particles) = (&self.law, &self.particles);
+        let across = dt / self.grid.cell_size().min();
+        self.crossed.clear();
+        let cells = self.bins.occupied().iter();
+        self.crossed.extend(cells.map(|&cell| {
+            let first = self.bins.particles_in(cell as usize).first();
+            let p = first.map_or(0, |&p| p as usize);
+            let density = particles.mass[p] / particles.volume[p];
+            let speed = law.wave_speed(density, &particles.stress[p], &particles.state[p]);
+            // Also where a law has no wave any more: there is then nothing to relax.
+            (speed * across).max(T::zero())
+        }));
     }
 
     /// Finds where surfaces cut cells, in one dimension.
@@ -404,6 +427,7 @@ where
             + self.dofs.bytes()
             + self.liquid.bytes()
             + self.spans.bytes()
+            + size_of::<T>() * self.crossed.capacity()
             + both * self.drag.len()
     }
 

@@ -34,7 +34,7 @@ where
         } else {
             let sums = self.update_particle_velocities(dt);
             if R::RELAXES {
-                self.relax();
+                self.relax(dt);
             }
             (sums, self.map_momentum())
         };

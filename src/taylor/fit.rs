@@ -19,7 +19,7 @@ use std::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
 use super::basis::taylor_sizes;
-use super::taylor_functions;
+use super::{shift_sums, taylor_functions};
 use crate::field::Field;
 use crate::scalar::Scalar;
 
@@ -76,6 +76,23 @@ impl<T: Scalar, const NB: usize> Gram<T, NB> {
         self.products[(k, 0)]
     }
 
+    /// Adds the points of a neighbouring cell, given by the sums of its own: it is the one `above` or below along `axis`.
+    #[inline(always)]
+    pub(crate) fn add_neighbour<const D: usize>(&mut self, other: &Self, axis: usize, above: bool) {
+        // Rows, then columns of the whole symmetric matrix.
+        let mut rows: [SVector<T, NB>; NB] =
+            std::array::from_fn(|i| SVector::from_fn(|j, _| other.products[(i.max(j), i.min(j))]));
+        shift_sums::<T, D, NB, _>(&mut rows, axis, above);
+        let mut columns: [SVector<T, NB>; NB] = std::array::from_fn(|j| SVector::from_fn(|i, _| rows[i][j]));
+        shift_sums::<T, D, NB, _>(&mut columns, axis, above);
+        for i in 0..NB {
+            for j in 0..=i {
+                self.products[(i, j)] += columns[j][i];
+            }
+        }
+        self.count += other.count;
+    }
+
     /// Square below which what is left of a function counts as nothing.
     #[inline(always)]
     fn least<const D: usize>(&self, tolerance: T) -> SVector<T, NB> {
@@ -126,6 +143,16 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         let mut wanted = [false; NB];
         wanted[first..end].fill(true);
         Self::from_rotations(points, wanted, &least)
+    }
+
+    /// The fit with all functions from sums alone; `None` where it would lose too many digits or the points do not tell the
+    /// functions apart.
+    #[inline(always)]
+    pub(crate) fn full<const D: usize>(gram: &Gram<T, NB>, tolerance: T) -> Option<Self> {
+        if gram.count < NB {
+            return None;
+        }
+        Self::from_gram(gram, 0..NB, &gram.least::<D>(tolerance))
     }
 
     /// `L D L^T` factorisation of the Gram matrix; `None` where it loses too many digits or leaves too little of a

@@ -11,6 +11,8 @@
 
 mod basis;
 mod fit;
+mod shift;
 
 pub use basis::taylor_functions;
 pub use fit::{CellFit, DEFAULT_TOLERANCE, Gram};
+pub(crate) use shift::shift_sums;

@@ -1,53 +1,86 @@
-//! Relaxed Taylor least squares: the accuracy and the energy that a prototype found, with 8 (and 4) particles per cell.
+//! Relaxed Taylor least squares: accuracy, energy in long runs, free surfaces; with 8, 4, 3 and 2 particles per cell.
 //!
 //! Large bar: relative L2 error of the stress at 0.1 s against the converged solution, as in `large_bar`. Column: against
 //! the dynamic solution, as in `column`. Smooth run: the large bar with v0 = 0.08 m/s, 80 cells, to 8 s. It stays smooth until
 //! 7.96 s, so the exact energy is constant; particles cross cell edges all the time, and published TLS gains energy without
-//! bound there.
+//! bound there. The figures are this library's own (`docs/relaxed-tls.md`); a prototype without the fits through neighbours
+//! and without free surfaces had 8.2e-3, 2.4e-3, 5.75e-4 on the bar and 6.6e-3, 1.6e-3, 1.6e-4 on the column.
 
 use super::*;
 
 const RELAXED: ReconstructionKind = ReconstructionKind::RelaxedTaylor;
 
-/// Basis; large bar with 8 and with 4 particles per cell; column.
-const TABLE: [(Basis, f64, f64, f64); 3] = [
-    (LINEAR, 8.2e-3, 8.9e-3, 6.6e-3),
-    (DUAL_DOMAIN, 2.4e-3, 3.2e-3, 1.6e-3),
-    (BSPLINE, 5.75e-4, 6.7e-4, 1.6e-4),
+/// Basis; large bar with 8, 4, 3 and 2 particles per cell.
+const BAR: [(Basis, [f64; 4]); 3] = [
+    (LINEAR, [2.61e-3, 3.32e-3, 3.49e-3, 4.64e-3]),
+    (DUAL_DOMAIN, [1.72e-3, 2.08e-3, 2.52e-3, 3.30e-3]),
+    (BSPLINE, [3.25e-4, 3.33e-4, 3.35e-4, 4.11e-4]),
 ];
 
+/// Basis; column with 20 and with 4 particles per cell on its own grid, and with 100 cells, where its top leaves a cell half
+/// empty.
+const COLUMN: [(Basis, [f64; 3]); 3] = [
+    (LINEAR, [1.70e-4, 3.08e-4, 4.93e-5]),
+    (DUAL_DOMAIN, [1.38e-4, 1.43e-4, 4.44e-5]),
+    (BSPLINE, [7.51e-6, 3.35e-5, 2.72e-6]),
+];
+
+fn stress_error(scene: &str, basis: Basis, set: &[&str]) -> f64 {
+    summary(scene, Method::new(basis, RELAXED), set).errors["stress"].relative_l2
+}
+
 #[test]
-fn three_bases_have_the_errors_of_the_prototype() {
-    for (basis, eight, four, column) in TABLE {
-        let method = Method::new(basis, RELAXED);
-        let error = |scene, set: &[&str]| summary(scene, method, set).errors["stress"].relative_l2;
-        assert_close(
-            &format!("{method}"),
-            error("vibrating-bar-large", &[]),
-            eight,
-            0.03,
-        );
-        let set = ["body.0.particles_per_cell=[4]"];
-        assert_close(
-            &format!("{method}, 4"),
-            error("vibrating-bar-large", &set),
-            four,
-            0.03,
-        );
-        // The prototype's figures have two digits here.
-        assert_close(
-            &format!("{method}, column"),
-            error("column-compaction", &[]),
-            column,
-            0.05,
-        );
+fn few_particles_cost_little_accuracy() {
+    for (basis, errors) in BAR {
+        for (per_cell, expected) in [8, 4, 3, 2].into_iter().zip(errors) {
+            let set = format!("body.0.particles_per_cell=[{per_cell}]");
+            let found = stress_error("vibrating-bar-large", basis, &[&set]);
+            assert_close(&format!("{basis}, {per_cell} per cell"), found, expected, 0.03);
+        }
+    }
+}
+
+#[test]
+fn a_free_surface_may_leave_cells_half_empty() {
+    let sets = [
+        "body.0.particles_per_cell=[20]",
+        "body.0.particles_per_cell=[4]",
+        "grid.cells=[100]",
+    ];
+    for (basis, errors) in COLUMN {
+        for (set, expected) in sets.into_iter().zip(errors) {
+            let found = stress_error("column-compaction", basis, &[set]);
+            assert_close(&format!("column, {basis}, {set}"), found, expected, 0.05);
+        }
+    }
+}
+
+/// Third order with B-splines, once the error of the step (first order, 1.4e-4 with 1e-4 s) is out of the way.
+#[test]
+fn the_order_is_that_of_the_basis() {
+    let error = |basis, cells: &str| {
+        let set = [cells, "time.step=1e-5"];
+        stress_error("vibrating-bar-large", basis, &set)
+    };
+    for (basis, lowest, highest) in [(LINEAR, 1.4, 2.2), (DUAL_DOMAIN, 1.8, 2.2), (BSPLINE, 2.6, 3.0)] {
+        let order = (error(basis, "grid.cells=[20]") / error(basis, "grid.cells=[40]")).log2();
+        assert!(lowest < order && order < highest, "{basis}: order {order:.2}");
+    }
+}
+
+/// The relaxation is a rate: a step of a fifth leaves the error as it is, within what the step itself contributes.
+#[test]
+fn smaller_steps_do_not_relax_more() {
+    for (basis, errors) in BAR {
+        let found = stress_error("vibrating-bar-large", basis, &["time.step=2e-5"]);
+        assert_close(&format!("{basis}, a fifth of the step"), found, errors[0], 0.15);
     }
 }
 
 #[test]
 fn mass_and_momentum_are_kept() {
     for (scene, limit) in [("vibrating-bar-large", 1e-14), ("column-compaction", 1e-12)] {
-        for (basis, ..) in TABLE {
+        for (basis, ..) in BAR {
             let found = summary(scene, Method::new(basis, RELAXED), &[]).conservation["solid"];
             assert!(
                 found.mass <= limit && found.momentum <= limit,
@@ -57,26 +90,54 @@ fn mass_and_momentum_are_kept() {
     }
 }
 
-fn smooth(method: Method, end: &str) -> Summary {
+fn smooth(method: Method, per_cell: usize, end: &str) -> Summary {
     let set = [
         "body.0.velocity=[\"0.08*sin(pi*x)\"]",
         "reference.vibrating-bar.velocity=0.08",
         "grid.cells=[80]",
+        &format!("body.0.particles_per_cell=[{per_cell}]"),
         end,
     ];
     summary("vibrating-bar-large", method, &set)
 }
 
 /// Within 0.98 and 1.003 at all times up to 8 s, where the published method has 1.17 (dual domain, lumped) to 13.5 (linear).
+/// Two particles per cell damp a linear basis more; three make it gain from 4 s on (observed, not understood).
 #[test]
 fn the_smooth_run_keeps_its_energy_where_the_published_method_gains() {
-    for (basis, ..) in TABLE {
-        let energy = smooth(Method::new(basis, RELAXED), "time.end=8.0").energy;
-        let (lowest, highest) = (energy.lowest_ratio.unwrap(), energy.highest_ratio.unwrap());
-        assert!(lowest > 0.98 && highest < 1.003, "{basis}: {lowest} to {highest}");
+    for (basis, ..) in BAR {
+        for per_cell in [8, 4, 3, 2] {
+            let energy = smooth(Method::new(basis, RELAXED), per_cell, "time.end=8.0").energy;
+            let (lowest, highest) = (energy.lowest_ratio.unwrap(), energy.highest_ratio.unwrap());
+            let (least, most) = match (basis, per_cell) {
+                (LINEAR, 2) => (0.92, 1.003),
+                (LINEAR, 3) => (0.98, 1.08),
+                _ => (0.98, 1.003),
+            };
+            assert!(
+                lowest > least && highest < most,
+                "{basis}, {per_cell}: {lowest} to {highest}"
+            );
+        }
     }
-    let published = smooth(Method::new(LINEAR, TAYLOR), "time.end=6.0").energy;
+    let published = smooth(Method::new(LINEAR, TAYLOR), 8, "time.end=6.0").energy;
     assert_close("published, linear", published.highest_ratio.unwrap(), 1.34, 0.03);
+}
+
+/// Shocks from 0.79 s on: the exact energy falls, so more than the round-off of the half step that velocities lag is a gain.
+#[test]
+fn the_bar_with_shocks_never_gains_energy() {
+    for (basis, ..) in BAR {
+        for per_cell in [8, 4, 3, 2] {
+            let set = [
+                &format!("body.0.particles_per_cell=[{per_cell}]")[..],
+                "time.end=10.0",
+            ];
+            let energy = summary("vibrating-bar-large", Method::new(basis, RELAXED), &set).energy;
+            let highest = energy.highest_ratio.unwrap();
+            assert!(highest < 1.001, "{basis}, {per_cell}: {highest}");
+        }
+    }
 }
 
 /// A law that leaves the stress as it is, with a state `S` of its own.
