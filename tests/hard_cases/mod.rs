@@ -3,6 +3,6 @@
 //! What a case must give is known from a scalar of twice the digits ([`double_double`]), not from the code it judges in its own
 //! arithmetic.
 
-//mod degenerate;
+mod degenerate;
 mod double_double;
-//mod precision;
+mod precision;
