@@ -1,13 +1,14 @@
 //! Taylor fits of cells whose particles hardly define one.
 //!
-//! Source: the papers ask for fewer functions where the particles' layout makes some of them dependent (journal section 5.3,
-//! figure 4). Goal: on every such layout the fit is finite, keeps mass and momentum, reproduces a constant, uses as many
-//! functions as geometry allows, and has the digits of its scalar.
-//! One cell `[0.3, 1]^D`, so that local coordinates are rounded; densities and velocities differ from particle to particle
-//! without pattern. The judge of the digits is the same fit in [`DoubleDouble`] on the same positions.
+//! Source: the papers ask for fewer functions where the particles' layout makes some of them dependent (journal
+//! section 5.3, figure 4). Goal: on every such layout the fit is finite, keeps mass and momentum, reproduces a
+//! constant, uses as many functions as geometry allows, and has the digits of its scalar. One cell `[0.3, 1]^D`, so
+//! that local coordinates are rounded; densities and velocities differ from particle to particle without pattern. The
+//! judge of the digits is the same fit in [`DoubleDouble`] on the same positions.
 //!
-//! Figures: with the default tolerance a function of which 2 % is left costs at most two of sixteen digits, so 1e-13; what is
-//! lost of mass and momentum is round-off of a few sums, 1e-14 at most. Without a tolerance the digits go with the gap.
+//! Figures: with the default tolerance a function of which 2 % is left costs at most two of sixteen digits, so 1e-13;
+//! what is lost of mass and momentum is round-off of a few sums, 1e-14 at most. Without a tolerance the digits go
+//! with the gap.
 
 use std::f64::consts::PI;
 
@@ -91,7 +92,9 @@ fn rough<T: Scalar>(p: usize) -> T {
 fn difference<const NB: usize>(found: &[f64; NB], judge: &[DoubleDouble; NB]) -> f64 {
     let largest = judge.iter().fold(0.0_f64, |m, c| m.max(c.primal().abs()));
     let pairs = found.iter().zip(judge);
-    let worst = pairs.fold(0.0_f64, |m, (&a, &b)| m.max((DoubleDouble::from(a) - b).primal().abs()));
+    let worst = pairs.fold(0.0_f64, |m, (&a, &b)| {
+        m.max((DoubleDouble::from(a) - b).primal().abs())
+    });
     worst / largest
 }
 
@@ -143,7 +146,9 @@ fn lost<const D: usize, const NB: usize>(body: &Body<f64, D>) -> f64 {
 fn constant_error<const D: usize, const NB: usize>(body: &Body<f64, D>) -> f64 {
     let fits = body.coefficients::<NB>(DEFAULT_TOLERANCE, |_| 3.0);
     let error = |k: usize, c: f64| (c - if k == 0 { 3.0 } else { 0.0 }).abs() / 3.0;
-    let errors = fits.iter().flat_map(|fit| fit.iter().enumerate().map(|(k, &c)| error(k, c)));
+    let errors = fits
+        .iter()
+        .flat_map(|fit| fit.iter().enumerate().map(|(k, &c)| error(k, c)));
     errors.fold(0.0, f64::max)
 }
 
@@ -157,7 +162,10 @@ fn check<const D: usize, const NB: usize>(name: &str, places: &[[f64; D]], funct
     assert!(fits.iter().flatten().all(|c| c.is_finite()), "{name}: {fits:?}");
     // A dropped function has no coefficient; the given mean has one and is not counted.
     let used = |k: usize| fits[k].iter().filter(|&&c| c != 0.0).count();
-    assert!(used(0) <= functions[0] && used(1) <= functions[1] + 1, "{name}: {fits:?}");
+    assert!(
+        used(0) <= functions[0] && used(1) <= functions[1] + 1,
+        "{name}: {fits:?}"
+    );
     let (lost, constant) = (lost::<D, NB>(&body), constant_error::<D, NB>(&body));
     let digits = disagreement::<D, NB>(places, DEFAULT_TOLERANCE, ROUGH);
     println!("{name}: lost {lost:.1e}, constant {constant:.1e}, against double-double {digits:.1e}");
@@ -175,7 +183,10 @@ fn gaps() -> impl Iterator<Item = f64> {
 fn no_particle_is_no_fit() {
     let body = Body::<f64, 1>::new(&[]);
     let mut taylor = body.prepared::<3>(DEFAULT_TOLERANCE);
-    assert_eq!((body.functions::<3>(DEFAULT_TOLERANCE), taylor.reduced_cells()), ([0, 0], 0));
+    assert_eq!(
+        (body.functions::<3>(DEFAULT_TOLERANCE), taylor.reduced_cells()),
+        ([0, 0], 0)
+    );
     assert!(taylor.free_coefficients(&body.cloud(), rough::<f64>).is_empty());
     taylor.integrate(&body.cloud(), |_| 1.0, |_, _| panic!("nothing to stream"));
 }
@@ -192,8 +203,9 @@ fn few_and_coincident_particles_on_a_line() {
     check::<1, 3>("both edges", &[[0.0], [1.0], [1.0], [0.0]], [2, 2]);
 }
 
-/// Of a pair the slope is left with the gap `g`, in units of the cell: less than 2 % of `1/sqrt 3`. With a particle beside it the
-/// curvature is left with `g/sqrt 6` or so, root mean square: 2 % of `1/sqrt 45` are reached between the first two gaps.
+/// Of a pair the slope is left with the gap `g`, in units of the cell: less than 2 % of `1/sqrt 3`. With a particle
+/// beside it the curvature is left with `g/sqrt 6` or so, root mean square: 2 % of `1/sqrt 45` are reached between
+/// the first two gaps.
 #[test]
 fn nearly_coincident_particles_on_a_line() {
     for gap in gaps() {
@@ -231,7 +243,11 @@ fn particles_on_a_conic() {
     };
     check::<2, 6>("circle", &circle(0.35), [5, 5]);
     check::<2, 6>("circle through the zeros", &circle(1.0 / 6.0_f64.sqrt()), [5, 4]);
-    check::<2, 6>("parabola", &along(9, |u| [u, (2.0 * u - 1.0).powi(2) / 2.0 + 0.3]), [5, 5]);
+    check::<2, 6>(
+        "parabola",
+        &along(9, |u| [u, (2.0 * u - 1.0).powi(2) / 2.0 + 0.3]),
+        [5, 5],
+    );
 }
 
 #[test]
@@ -248,7 +264,14 @@ fn a_lone_particle_or_a_face_in_space() {
 /// Six places in the plane, of which two are nearly one.
 fn six(gap: f64) -> [[f64; 2]; 6] {
     let twin = [0.15, 0.55 + gap];
-    [[0.1, 0.2], [0.9, 0.1], [0.3, 0.85], [0.7, 0.6], [0.15, 0.55], twin]
+    [
+        [0.1, 0.2],
+        [0.9, 0.1],
+        [0.3, 0.85],
+        [0.7, 0.6],
+        [0.15, 0.55],
+        twin,
+    ]
 }
 
 #[test]
@@ -259,9 +282,9 @@ fn nearly_coincident_particles_in_the_plane() {
     }
 }
 
-/// With next to no tolerance every function is fitted that arithmetic can tell from the others. The condition number is then the
-/// inverse of the gap, and round-off counts it once: values without pattern and a constant keep nine digits down
-/// to a gap of 1e-6.
+/// With next to no tolerance every function is fitted that arithmetic can tell from the others. The condition number
+/// is then the inverse of the gap, and round-off counts it once: values without pattern and a constant keep nine
+/// digits down to a gap of 1e-6.
 #[test]
 fn digits_that_survive_without_a_tolerance() {
     const NONE: f64 = 1e-14;
@@ -271,17 +294,28 @@ fn digits_that_survive_without_a_tolerance() {
             let on_line = disagreement::<1, 3>(&line, NONE, values);
             [on_line, disagreement::<2, 6>(&six(gap), NONE, values)]
         });
-        println!("gap {gap:.0e}, line and plane: without pattern, constant {}", text(&errors));
+        println!(
+            "gap {gap:.0e}, line and plane: without pattern, constant {}",
+            text(&errors)
+        );
         let worst = errors.as_flattened().iter().fold(0.0_f64, |m, &e| m.max(e));
         assert!(worst <= 50.0 * f64::EPSILON / gap, "{gap:e}: {}", text(&errors));
         assert!(gap < 0.9e-6 || worst <= 1e-9, "{gap:e}: {}", text(&errors));
         // It is the ill-conditioned fit that is seen here: no arithmetic keeps all digits.
-        assert!(gap > 1.1e-8 || worst >= f64::EPSILON / gap / 50.0, "{gap:e}: {}", text(&errors));
+        assert!(
+            gap > 1.1e-8 || worst >= f64::EPSILON / gap / 50.0,
+            "{gap:e}: {}",
+            text(&errors)
+        );
     }
 }
 
 fn text(errors: &[[f64; 2]]) -> String {
-    errors.as_flattened().iter().map(|e| format!("{e:.1e} ")).collect()
+    errors
+        .as_flattened()
+        .iter()
+        .map(|e| format!("{e:.1e} "))
+        .collect()
 }
 
 /// A fit of `sin x + 2` in `[pi, 2 pi]`, its mean exact: coefficients, largest error and root mean square error.
@@ -307,19 +341,28 @@ fn papers_cell(points: &[f64]) -> ([f64; 3], f64, f64) {
     (fit, largest, (square / 2001.0).sqrt())
 }
 
-/// The papers' figure 4: points at pi and 5 pi/3 only, where the quadratic function is -1/3 of the linear one. With fewer functions
-/// the cell is a line that keeps the integral; "it will lower the accuracy", and does: the half wave's right end is
-/// missed by 1.28 of its height, where a third point at 2 pi (their figure 5 puts a virtual one there; here it is the
-/// field's own value) leaves 0.04. Singular functions fitted all the same would have no bound.
+/// The papers' figure 4: points at pi and 5 pi/3 only, where the quadratic function is -1/3 of the linear one. With
+/// fewer functions the cell is a line that keeps the integral; "it will lower the accuracy", and does: the half
+/// wave's right end is missed by 1.28 of its height, where a third point at 2 pi (their figure 5 puts a virtual one
+/// there; here it is the field's own value) leaves 0.04. Singular functions fitted all the same would have no bound.
 #[test]
 fn the_papers_cell_of_two_points() {
     let (fit, largest, square) = papers_cell(&[PI, 5.0 * PI / 3.0]);
     // Least squares through the mean at s = -1 and 1/3, by hand.
     let mean = 2.0 - 2.0 / PI;
     let slope = 0.9 * (-(2.0 - mean) + (2.0 - 0.75_f64.sqrt() - mean) / 3.0);
-    assert!((fit[0], fit[2]) == (mean, 0.0) && (fit[1] - slope).abs() < 1e-15, "{fit:?}");
-    assert!((largest - 1.2784).abs() < 1e-4 && (square - 0.4820).abs() < 1e-4, "{largest} {square}");
+    assert!(
+        (fit[0], fit[2]) == (mean, 0.0) && (fit[1] - slope).abs() < 1e-15,
+        "{fit:?}"
+    );
+    assert!(
+        (largest - 1.2784).abs() < 1e-4 && (square - 0.4820).abs() < 1e-4,
+        "{largest} {square}"
+    );
     let (fit, largest, square) = papers_cell(&[PI, 5.0 * PI / 3.0, (2.0 * PI).next_down()]);
     assert!(fit[0] == mean && fit[2] > 1.9, "{fit:?}");
-    assert!((largest - 0.0438).abs() < 1e-4 && (square - 0.0275).abs() < 1e-4, "{largest} {square}");
+    assert!(
+        (largest - 0.0438).abs() < 1e-4 && (square - 0.0275).abs() < 1e-4,
+        "{largest} {square}"
+    );
 }
