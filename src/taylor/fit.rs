@@ -201,6 +201,7 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
 
     /// Coefficients of the field with the given `samples` (local coordinates, weight and value at the same points as
     /// at the preparation; weight 1 unless it was weighted), less `mean`. The mean itself is *not* added to the first coefficient.
+    /// Where the points are not well spread the samples are run through once for each function.
     #[inline(always)]
     pub fn coefficients<const D: usize, Q: Field<T>>(
         &self,
