@@ -59,6 +59,8 @@
 //!
 //! Features: `cli` (default) builds the command; `scene` the scenes without it; neither leaves the numerics alone.
 
+#![forbid(unsafe_code)]
+
 pub mod basis;
 pub mod error;
 pub mod field;

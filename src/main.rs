@@ -1,5 +1,7 @@
 //! The command `materialpoint`: runs scenes, compares methods. See `materialpoint --help`.
 
+#![forbid(unsafe_code)]
+
 mod cli;
 
 use std::process::ExitCode;

@@ -190,7 +190,7 @@ fn samples<'a, T: Scalar, const D: usize, Q: Field<T>>(
     cell: usize,
     patch: &Patch<T, D>,
     value: &'a impl Fn(usize) -> Q,
-) -> impl Iterator<Item = (SVector<T, D>, T, Q)> + 'a {
+) -> impl Iterator<Item = (SVector<T, D>, T, Q)> + Clone + 'a {
     local(cloud, cell, patch).map(move |(p, s)| (s, T::one(), value(p)))
 }
 

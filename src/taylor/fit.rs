@@ -11,8 +11,8 @@
 //! where what is left of it after the functions before it, in root mean square over the points, is less than a share of
 //! its root mean square over the cell.
 //!
-//! Round-off of the coefficients still counts the condition number of `U` twice, which the share bounds: harmless with the
-//! default of 2 %, not with a share near the machine epsilon.
+//! There each function is fitted to what those before it left, so that round-off of the coefficients counts the
+//! condition number of `U` once. The share bounds it.
 
 use std::ops::Range;
 
@@ -228,14 +228,15 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
 
     /// Coefficients of the field with the given `samples` (local coordinates, weight and value at the same points as
     /// at the preparation; weight 1 unless it was weighted), less `mean`. The mean itself is *not* added to the first coefficient.
+    /// Where the points are not well spread the samples are run through once for each function.
     #[inline(always)]
     pub fn coefficients<const D: usize, Q: Field<T>>(
         &self,
-        samples: impl Iterator<Item = (SVector<T, D>, T, Q)>,
+        samples: impl Iterator<Item = (SVector<T, D>, T, Q)> + Clone,
         mean: Q,
     ) -> [Q; NB] {
-        let mut sums = [Q::zero(); NB];
         if self.well_spread {
+            let mut sums = [Q::zero(); NB];
             for (s, weight, value) in samples {
                 let psi = taylor_functions::<T, D, NB>(&s);
                 let mut rest = value;
@@ -246,16 +247,39 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
             }
             return self.coefficients_from_sums(sums);
         }
-        for (s, weight, value) in samples {
-            let psi = taylor_functions::<T, D, NB>(&s);
-            let mut rest = value;
-            rest.add_scaled(-T::one(), mean);
-            for k in 0..NB {
-                let pi = (0..k).fold(psi[k], |sum, j| sum + self.factors[(k, j)] * psi[j]);
-                sums[k].add_scaled(weight * pi, rest);
+        self.successive_coefficients(samples, mean)
+    }
+
+    /// Coefficients where the points are not well spread: each function is fitted to what those before it have left.
+    /// Fitted to the values themselves, a function that is small on the points would be given the round-off of all
+    /// that the values have in common, divided by the square of what is left of it.
+    #[cold]
+    #[inline(never)]
+    fn successive_coefficients<const D: usize, Q: Field<T>>(
+        &self,
+        samples: impl Iterator<Item = (SVector<T, D>, T, Q)> + Clone,
+        mean: Q,
+    ) -> [Q; NB] {
+        let mut coefficients = [Q::zero(); NB];
+        for k in (0..NB).filter(|&k| self.factors[(k, k)] != T::zero()) {
+            let mut sum = Q::zero();
+            for (s, weight, value) in samples.clone() {
+                let psi = taylor_functions::<T, D, NB>(&s);
+                let (mut rest, mut pi) = (value, psi[k]);
+                rest.add_scaled(-T::one(), mean);
+                for j in 0..k {
+                    rest.add_scaled(-psi[j], coefficients[j]);
+                    pi += self.factors[(k, j)] * psi[j];
+                }
+                sum.add_scaled(weight * pi, rest);
+            }
+            coefficients[k] = sum.scaled(self.factors[(k, k)]);
+            let last = coefficients[k];
+            for j in 0..k {
+                coefficients[j].add_scaled(self.factors[(k, j)], last);
             }
         }
-        self.orthogonal_coefficients(sums)
+        coefficients
     }
 
     /// Coefficients from the sums of `w psi_k q` over the points. Only where [`CellFit::is_well_spread`].
