@@ -59,7 +59,12 @@ fn a_valid_scene_runs_to_its_end_or_stops_with_a_reason() {
     result.unwrap_or_else(|failure| panic!("{failure}"));
     let tally = tally.into_inner();
     println!("{tally:?}");
-    let Tally { refused, stopped, nothing_resists, done } = tally;
+    let Tally {
+        refused,
+        stopped,
+        nothing_resists,
+        done,
+    } = tally;
     let all = refused + stopped + nothing_resists + done;
     assert!(100 * refused <= all && 2 * done >= all, "{tally:?}");
 }
@@ -80,7 +85,9 @@ fn end_of(text: &Text, folder: &Folder) -> Result<End, TestCaseError> {
             Ok(End::Done)
         }
         Err(RunError::NoCriticalStep) => Ok(End::NothingResists),
-        Err(RunError::Stopped { .. }) => Ok(End::Stopped),
+        Err(RunError::Stopped { .. } | RunError::NoEnergy { .. } | RunError::NoEnergyAtStart { .. }) => {
+            Ok(End::Stopped)
+        }
         Err(other) => Err(TestCaseError::fail(format!("a scene that was accepted: {other}"))),
     }
 }
@@ -124,7 +131,10 @@ fn check_summary(scene: &Scene, outcome: &Outcome) -> Result<(), TestCaseError> 
         ScalarKind::F32 => 1e-3,
     };
     for errors in outcome.summary.conservation.values() {
-        prop_assert!(errors.mass <= bound && errors.momentum_scaled <= bound, "{errors:?}");
+        prop_assert!(
+            errors.mass <= bound && errors.momentum_scaled <= bound,
+            "{errors:?}"
+        );
     }
     Ok(())
 }

@@ -23,26 +23,37 @@ impl fmt::Debug for Text {
 pub fn scene_text() -> impl Strategy<Value = Text> {
     let bodies = prop::collection::vec(body(), 1..=2);
     let faces = [face(), face()];
-    (space(), matter(), method(), bodies, gaps(), faces, load(), time(), output()).prop_map(
-        |(space, matter, method, bodies, gaps, faces, load, time, output)| {
-            let mut text = "title = \"Generated\"\n".to_owned();
-            let scales = Scales::new(&space, &matter);
-            space.write(&mut text);
-            time.write(&mut text, &scales);
-            method.write(&mut text, matter.soil.is_some());
-            matter.write(&mut text);
-            let ends = ends(&space, &bodies, &gaps);
-            for (body, ends) in bodies.iter().zip(ends) {
-                body.write(&mut text, ends, &scales, &matter);
-            }
-            for (name, face) in ["x-min", "x-max"].into_iter().zip(&faces) {
-                face.write(&mut text, name, &scales, matter.soil.is_some());
-            }
-            load.write(&mut text, &scales, matter.soil.is_some());
-            output.write(&mut text);
-            Text(text)
-        },
+    (
+        space(),
+        matter(),
+        method(),
+        bodies,
+        gaps(),
+        faces,
+        load(),
+        time(),
+        output(),
     )
+        .prop_map(
+            |(space, matter, method, bodies, gaps, faces, load, time, output)| {
+                let mut text = "title = \"Generated\"\n".to_owned();
+                let scales = Scales::new(&space, &matter);
+                space.write(&mut text);
+                time.write(&mut text, &scales);
+                method.write(&mut text, matter.soil.is_some());
+                matter.write(&mut text);
+                let ends = ends(&space, &bodies, &gaps);
+                for (body, ends) in bodies.iter().zip(ends) {
+                    body.write(&mut text, ends, &scales, &matter);
+                }
+                for (name, face) in ["x-min", "x-max"].into_iter().zip(&faces) {
+                    face.write(&mut text, name, &scales, matter.soil.is_some());
+                }
+                load.write(&mut text, &scales, matter.soil.is_some());
+                output.write(&mut text);
+                Text(text)
+            },
+        )
 }
 
 /// A line of the text.
@@ -110,7 +121,10 @@ impl Space {
 
     fn write(&self, text: &mut String) {
         let (min, max, cells) = (self.min, self.max(), self.cells);
-        line!(text, "[grid]\nmin = [{min:?}]\nmax = [{max:?}]\ncells = [{cells}]");
+        line!(
+            text,
+            "[grid]\nmin = [{min:?}]\nmax = [{max:?}]\ncells = [{cells}]"
+        );
     }
 }
 
@@ -129,7 +143,10 @@ fn gaps() -> impl Strategy<Value = Gaps> {
 /// Where each body begins and ends.
 fn ends(space: &Space, bodies: &[Body], gaps: &Gaps) -> Vec<[f64; 2]> {
     let lengths = |n: usize| [gaps.sizes[n], bodies[n].size];
-    let parts: Vec<f64> = (0..bodies.len()).flat_map(lengths).chain([gaps.sizes[2]]).collect();
+    let parts: Vec<f64> = (0..bodies.len())
+        .flat_map(lengths)
+        .chain([gaps.sizes[2]])
+        .collect();
     let total: f64 = parts.iter().sum();
     let mut sum = 0.0;
     let shares = parts[..2 * bodies.len()].iter().map(|part| {
@@ -138,12 +155,22 @@ fn ends(space: &Space, bodies: &[Body], gaps: &Gaps) -> Vec<[f64; 2]> {
     });
     let shares: Vec<f64> = shares.collect();
     let cells = space.cells as f64;
-    let snapped: Vec<f64> = shares.iter().map(|share| (share * cells).round() / cells).collect();
+    let snapped: Vec<f64> = shares
+        .iter()
+        .map(|share| (share * cells).round() / cells)
+        .collect();
     let none_vanishes = snapped.chunks(2).all(|ends| ends[0] < ends[1]);
-    let chosen = if gaps.at_edges && none_vanishes { snapped } else { shares };
+    let chosen = if gaps.at_edges && none_vanishes {
+        snapped
+    } else {
+        shares
+    };
     // Round-off must not put an end outside.
     let place = |share: &f64| (space.min + share * space.length).min(space.max());
-    chosen.chunks(2).map(|ends| [place(&ends[0]), place(&ends[1])]).collect()
+    chosen
+        .chunks(2)
+        .map(|ends| [place(&ends[0]), place(&ends[1])])
+        .collect()
 }
 
 #[derive(Clone, Debug)]
@@ -157,14 +184,22 @@ struct Soil {
 
 fn soil() -> impl Strategy<Value = Soil> {
     let exponent = prop::option::of(prop_oneof![Just(2.0), -3.0..5.0_f64]);
-    let parts = (0.01..0.99_f64, logarithmic(1e4, 1e10), logarithmic(1e-12, 1.0), exponent, any::<bool>());
-    parts.prop_map(|(porosity, bulk_modulus, permeability, exponent, explicit)| Soil {
-        porosity,
-        bulk_modulus,
-        permeability,
+    let parts = (
+        0.01..0.99_f64,
+        logarithmic(1e4, 1e10),
+        logarithmic(1e-12, 1.0),
         exponent,
-        explicit,
-    })
+        any::<bool>(),
+    );
+    parts.prop_map(
+        |(porosity, bulk_modulus, permeability, exponent, explicit)| Soil {
+            porosity,
+            bulk_modulus,
+            permeability,
+            exponent,
+            explicit,
+        },
+    )
 }
 
 #[derive(Clone, Debug)]
@@ -176,8 +211,12 @@ struct Matter {
     soil: Option<Soil>,
 }
 
-const LAWS: [(&str, bool); 4] =
-    [("linear-elastic", false), ("linear-elastic", true), ("neo-hookean", true), ("logarithmic", true)];
+const LAWS: [(&str, bool); 4] = [
+    ("linear-elastic", false),
+    ("linear-elastic", true),
+    ("neo-hookean", true),
+    ("logarithmic", true),
+];
 
 fn matter() -> impl Strategy<Value = Matter> {
     let parts = (
@@ -199,13 +238,27 @@ impl Matter {
     fn write(&self, text: &mut String) {
         let strain = if self.large { "large" } else { "small" };
         line!(text, "[material]\nstrain = \"{strain}\"");
-        line!(text, "law.{} = {{ youngs_modulus = {:?} }}", self.law, self.youngs_modulus);
+        line!(
+            text,
+            "law.{} = {{ youngs_modulus = {:?} }}",
+            self.law,
+            self.youngs_modulus
+        );
         let Some(soil) = &self.soil else {
             line!(text, "density = {:?}", self.density);
             return;
         };
-        line!(text, "phases = 2\nporosity = {:?}\nsolid_density = {:?}", soil.porosity, self.density);
-        line!(text, "liquid_density = 1000\nliquid_bulk_modulus = {:?}", soil.bulk_modulus);
+        line!(
+            text,
+            "phases = 2\nporosity = {:?}\nsolid_density = {:?}",
+            soil.porosity,
+            self.density
+        );
+        line!(
+            text,
+            "liquid_density = 1000\nliquid_bulk_modulus = {:?}",
+            soil.bulk_modulus
+        );
         line!(text, "permeability = {:?}", soil.permeability);
         if let Some(exponent) = soil.exponent {
             line!(text, "permeability_exponent = {exponent:?}");
@@ -238,14 +291,16 @@ fn method() -> impl Strategy<Value = Method> {
         prop::option::of(1..=6_u8),
         one_in(8),
     );
-    parts.prop_map(|(basis, degree, reconstruction, velocity_mass, subpoints, single)| Method {
-        basis,
-        degree,
-        reconstruction,
-        velocity_mass,
-        subpoints,
-        single,
-    })
+    parts.prop_map(
+        |(basis, degree, reconstruction, velocity_mass, subpoints, single)| Method {
+            basis,
+            degree,
+            reconstruction,
+            velocity_mass,
+            subpoints,
+            single,
+        },
+    )
 }
 
 impl Method {
@@ -255,7 +310,11 @@ impl Method {
             "relaxed-taylor" if two_phases => "taylor",
             other => other,
         };
-        line!(text, "[method]\nbasis = \"{}\"\nreconstruction = \"{reconstruction}\"", self.basis);
+        line!(
+            text,
+            "[method]\nbasis = \"{}\"\nreconstruction = \"{reconstruction}\"",
+            self.basis
+        );
         if let (Some(degree), "bspline") = (self.degree, self.basis) {
             line!(text, "degree = {degree}");
         }
@@ -323,22 +382,37 @@ struct Body {
 fn body() -> impl Strategy<Value = Body> {
     let jitter = prop::option::of((prop_oneof![Just(1.0), 0.0..1.0_f64], any::<u32>()));
     let velocity = prop::option::weighted(0.8, formula());
-    let parts = (0.01..1.0_f64, 1..=12_usize, velocity, maybe(), maybe(), maybe(), jitter, one_in(4));
-    parts.prop_map(|(size, per_cell, velocity, stress, liquid_velocity, pore_pressure, jitter, dofs)| Body {
-        size,
-        per_cell,
+    let parts = (
+        0.01..1.0_f64,
+        1..=12_usize,
         velocity,
-        stress,
-        liquid_velocity,
-        pore_pressure,
+        maybe(),
+        maybe(),
+        maybe(),
         jitter,
-        dofs,
-    })
+        one_in(4),
+    );
+    parts.prop_map(
+        |(size, per_cell, velocity, stress, liquid_velocity, pore_pressure, jitter, dofs)| Body {
+            size,
+            per_cell,
+            velocity,
+            stress,
+            liquid_velocity,
+            pore_pressure,
+            jitter,
+            dofs,
+        },
+    )
 }
 
 impl Body {
     fn write(&self, text: &mut String, [min, max]: [f64; 2], scales: &Scales, matter: &Matter) {
-        line!(text, "[[body]]\nmin = [{min:?}]\nmax = [{max:?}]\nparticles_per_cell = [{}]", self.per_cell);
+        line!(
+            text,
+            "[[body]]\nmin = [{min:?}]\nmax = [{max:?}]\nparticles_per_cell = [{}]",
+            self.per_cell
+        );
         let of_x = |formula: &Formula, size: f64| formula.text("x", size, scales.length);
         if let Some(velocity) = &self.velocity {
             line!(text, "velocity = [\"{}\"]", of_x(velocity, scales.speed));
@@ -390,8 +464,11 @@ fn face() -> impl Strategy<Value = Face> {
         formula().prop_map(Held::Velocity),
         formula().prop_map(Held::Traction),
     ];
-    let pores =
-        prop_oneof![Just(Pores::Sealed), Just(Pores::Drained), formula().prop_map(Pores::Pressure)];
+    let pores = prop_oneof![
+        Just(Pores::Sealed),
+        Just(Pores::Drained),
+        formula().prop_map(Pores::Pressure)
+    ];
     (held, pores).prop_map(|(held, pores)| Face { held, pores })
 }
 
@@ -401,9 +478,14 @@ impl Face {
         let held = match &self.held {
             Held::Free => String::new(),
             Held::Fixed => "fixed = true\n".to_owned(),
-            Held::Velocity(formula) => format!("velocity = [\"{}\"]\n", formula.text("t", scales.speed, period)),
+            Held::Velocity(formula) => {
+                format!("velocity = [\"{}\"]\n", formula.text("t", scales.speed, period))
+            }
             Held::Traction(formula) => {
-                format!("traction = [\"{}\"]\n", formula.text("t", scales.youngs_modulus, period))
+                format!(
+                    "traction = [\"{}\"]\n",
+                    formula.text("t", scales.youngs_modulus, period)
+                )
             }
         };
         let pores = match &self.pores {
@@ -411,7 +493,10 @@ impl Face {
             Pores::Sealed => String::new(),
             Pores::Drained => "drained = true\n".to_owned(),
             Pores::Pressure(formula) => {
-                format!("pore_pressure = \"{}\"\n", formula.text("t", scales.youngs_modulus, period))
+                format!(
+                    "pore_pressure = \"{}\"\n",
+                    formula.text("t", scales.youngs_modulus, period)
+                )
             }
         };
         if !(held.is_empty() && pores.is_empty()) {
@@ -427,8 +512,7 @@ struct Load {
 }
 
 fn load() -> impl Strategy<Value = Load> {
-    (maybe(), prop::option::of(0.1..100.0_f64))
-        .prop_map(|(body_force, gravity)| Load { body_force, gravity })
+    (maybe(), prop::option::of(0.1..100.0_f64)).prop_map(|(body_force, gravity)| Load { body_force, gravity })
 }
 
 impl Load {
