@@ -165,7 +165,7 @@ mod tests {
             "{start}"
         );
         // One step strains the particles by 1.5: the stress jumps beyond the modulus.
-        let later = run_with("body.0.velocity=[\"6*(x-1)\"]").unwrap_err();
+        let later = run_with("body.0.velocity=[\"12*(x-1)\"]").unwrap_err();
         assert!(matches!(later, RunError::NoEnergy { step: 1, .. }), "{later}");
     }
 
