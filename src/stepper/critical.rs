@@ -33,8 +33,8 @@ pub struct CriticalStep<T> {
 
 /// Strain by which the law's tangent is probed.
 const PROBE_STRAIN: f64 = 1e-3;
-/// Iterations over which the eigenvalue must settle. The change in one is no sign: a mode of a partly filled end cell, of which
-/// the start has little, grows unseen below the others for a while.
+/// Iterations over which the eigenvalue must settle. The change in one is no sign: a mode of a partly filled end cell, of
+/// which the start has little, grows unseen below the others for a while.
 const STRIDE: usize = 40;
 /// Share of `(c / h)^2`, `c` the wave speed, below which an eigenvalue is round-off: particles of which no two share a DOF
 /// that strains them.
