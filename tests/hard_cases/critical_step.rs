@@ -111,7 +111,7 @@ fn has_an_energy(method: Method) -> bool {
     matches!(method.reconstruction, Shepard | RelaxedTaylor)
 }
 
-/// Offsets of which each hides a mode that the prediction must find: those of the end cells grow slowly out of the start.
+/// Offsets of which some hide a mode that the prediction must find: those of the end cells grow slowly out of the start.
 const HIDING: [usize; 4] = [0, 5, 11, 16];
 
 fn layouts(ks: &[usize]) -> impl Iterator<Item = (usize, f64)> {
