@@ -49,7 +49,9 @@ impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         let message = error.to_string();
         match error {
-            RunError::Stopped { .. } | RunError::Output(_) => Self::Stopped(message),
+            RunError::Stopped { .. } | RunError::NoEnergy { .. } | RunError::Output(_) => {
+                Self::Stopped(message)
+            }
             _ => Self::Input(message),
         }
     }

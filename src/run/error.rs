@@ -34,6 +34,28 @@ pub enum RunError {
         "time.step = \"auto\": nothing resists a motion of these particles, so no step is critical; give a number"
     )]
     NoCriticalStep,
+    /// Stresses or velocities at the start that have no finite energy.
+    #[error(
+        "the energy at the start is {value}; expected smaller velocities and stresses (linear-elastic at large strain bears less than youngs_modulus)"
+    )]
+    NoEnergyAtStart {
+        /// What came out (J/m2).
+        value: f64,
+    },
+    /// Numbers that grew beyond what a float can hold, or a stress beyond what the law can bear.
+    #[error("step {step}: the energy of the particles became {value}; {}", advice(*dt, *critical, remedy))]
+    NoEnergy {
+        /// Number of the step, from 1.
+        step: usize,
+        /// What came out (J/m2).
+        value: f64,
+        /// Time step of the run (s).
+        dt: f64,
+        /// Largest stable step of the initial layout (s), if it could be found.
+        critical: Option<f64>,
+        /// What helps against a step above it, besides a smaller one.
+        remedy: &'static str,
+    },
     /// The run stopped on the way.
     #[error("{source}; {}", advice(*dt, *critical, remedy))]
     Stopped {

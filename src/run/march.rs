@@ -45,13 +45,18 @@ impl Default for EnergyRange {
 }
 
 impl EnergyRange {
-    fn sample(&mut self, energy: f64) {
+    /// The energy is the error if it is not finite.
+    fn sample(&mut self, energy: f64) -> Result<(), f64> {
+        if !energy.is_finite() {
+            return Err(energy);
+        }
         if self.initial.is_nan() {
             self.initial = energy;
         }
         self.last = energy;
         self.highest = self.highest.max(energy);
         self.lowest = self.lowest.min(energy);
+        Ok(())
     }
 }
 
@@ -66,7 +71,8 @@ pub(super) fn march(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<March, RunError> {
     let mut march = March::default();
-    march.energy.sample(simulation.energy().total());
+    let start = march.energy.sample(simulation.energy().total());
+    start.map_err(|value| RunError::NoEnergyAtStart { value })?;
     let steps = schedule.steps;
     let sample_every = steps.div_ceil(samples.max(1)).max(1);
     let mut begun = Instant::now();
@@ -74,12 +80,12 @@ pub(super) fn march(
         let dt = schedule.size(step);
         let forcing = forcing(scene, schedule.time(step), dt)?;
         if let Err(source) = simulation.step(dt, &forcing) {
-            let limit = critical_step(scene).ok().flatten();
+            let (critical, remedy) = limit(scene);
             return Err(RunError::Stopped {
                 source,
                 dt,
-                critical: limit.map(|limit| limit.step),
-                remedy: limit.map_or("", |limit| remedy(limit.mechanism)),
+                critical,
+                remedy,
             });
         }
         let done = step + 1;
@@ -87,7 +93,16 @@ pub(super) fn march(
         if done % sample_every == 0 || done == steps || writes {
             // The clock runs for the step loop only.
             march.wall += begun.elapsed();
-            march.energy.sample(simulation.energy().total());
+            if let Err(value) = march.energy.sample(simulation.energy().total()) {
+                let (critical, remedy) = limit(scene);
+                return Err(RunError::NoEnergy {
+                    step: done,
+                    value,
+                    dt,
+                    critical,
+                    remedy,
+                });
+            }
             if let (true, ParticleOutput::Csv, Some(folder)) = (writes, scene.output.particles, folder) {
                 let name = format!("particles-{done:08}.csv");
                 let table = particle_table(scene, &simulation.particles(), &simulation.liquid());
@@ -98,4 +113,73 @@ pub(super) fn march(
         }
     }
     Ok(march)
+}
+
+/// Largest stable step (s) of the initial layout, if it can be found, and what helps against a larger one.
+fn limit(scene: &Scene) -> (Option<f64>, &'static str) {
+    match critical_step(scene).ok().flatten() {
+        Some(limit) => (Some(limit.step), remedy(limit.mechanism)),
+        None => (None, ""),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::run::{RunError, run};
+    use crate::scene::Scene;
+
+    /// Two cells of a material whose stress stays below its modulus.
+    const BAR: &str = r#"
+        title = "Bar"
+        [grid]
+        min = [0]
+        max = [2]
+        cells = [2]
+        [time]
+        step = 0.5
+        end = 0.5
+        [method]
+        basis = "linear"
+        reconstruction = "shepard"
+        [material]
+        strain = "large"
+        law.linear-elastic = { youngs_modulus = 1 }
+        density = 1
+        [[body]]
+        min = [0.5]
+        max = [1.5]
+        particles_per_cell = [2]
+    "#;
+
+    fn run_with(set: &str) -> Result<f64, RunError> {
+        let scene = Scene::from_toml(BAR, &[set.to_owned()]).unwrap();
+        run(&scene, None, &mut |_| {}).map(|outcome| outcome.summary.energy.last)
+    }
+
+    #[test]
+    fn a_run_whose_energy_is_no_number_is_not_done() {
+        assert!(run_with("body.0.stress=\"0.99\"").unwrap().is_finite());
+        let start = run_with("body.0.stress=\"1.01\"").unwrap_err();
+        assert!(
+            matches!(start, RunError::NoEnergyAtStart { value } if value.is_nan()),
+            "{start}"
+        );
+        // One step strains the particles by 1.5: the stress jumps beyond the modulus.
+        let later = run_with("body.0.velocity=[\"12*(x-1)\"]").unwrap_err();
+        assert!(matches!(later, RunError::NoEnergy { step: 1, .. }), "{later}");
+    }
+
+    #[test]
+    fn a_ratio_to_next_to_nothing_is_left_out() {
+        let set = [
+            "body.0.velocity=[\"1e-160\"]".to_owned(),
+            "load.body_force=[\"1\"]".to_owned(),
+        ];
+        let scene = Scene::from_toml(BAR, &set).unwrap();
+        let energy = run(&scene, None, &mut |_| {}).unwrap().summary.energy;
+        assert!(
+            energy.initial > 0.0 && energy.highest_ratio.is_none(),
+            "{energy:?}"
+        );
+    }
 }

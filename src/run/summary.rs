@@ -78,7 +78,7 @@ impl From<Conservation<f64>> for ConservationSummary {
     }
 }
 
-/// Kinetic plus strain energy of a run; ratios to the initial one, absent where that is zero.
+/// Kinetic plus strain energy of a run; ratios to the initial one, absent where that is zero or next to it.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct EnergySummary {
     /// At the start (J/m2).
@@ -151,7 +151,8 @@ impl Summary {
             .filter_map(|(phase, errors)| Some((phase, errors?.into())))
             .collect();
         let energy = march.energy;
-        let ratio = |value: f64| (energy.initial > 0.0).then(|| value / energy.initial);
+        // Of next to nothing nothing is a finite multiple.
+        let ratio = |value: f64| Some(value / energy.initial).filter(|ratio| ratio.is_finite());
         Self {
             title: scene.title.clone(),
             method: MethodSummary::of(scene),

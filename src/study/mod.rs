@@ -226,7 +226,7 @@ fn one(scene: &Scene, method: Method, cells: usize) -> Result<(Row, Timing, Opti
             timing.times.push(outcome.summary.wall_seconds);
             Ok((row, timing, Some(outcome)))
         }
-        Err(stopped @ RunError::Stopped { .. }) => {
+        Err(stopped @ (RunError::Stopped { .. } | RunError::NoEnergy { .. })) => {
             row.stopped = Some(stopped.to_string());
             Ok((row, timing, None))
         }
