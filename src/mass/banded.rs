@@ -75,6 +75,13 @@ impl<T: Scalar> Banded<T> {
         self.rows.clone_from(&other.rows);
     }
 
+    /// Moves the known part of unknown `c`, component `axis`, to the right-hand side of the other equations.
+    pub fn move_known<const D: usize>(&self, c: usize, axis: usize, value: T, right: &mut [SVector<T, D>]) {
+        for j in c.saturating_sub(self.half_band)..(c + self.half_band + 1).min(self.order) {
+            right[j][axis] -= self.rows[self.at(c.max(j), c.min(j))] * value;
+        }
+    }
+
     /// Prescribes component `axis` of unknown `c`: moves its known part to the right-hand side and replaces its
     /// equation by `x_c = value`.
     pub fn prescribe<const D: usize>(

@@ -167,7 +167,7 @@ where
     /// Replaces the velocities `v` by `G v` and returns `|G v| / |v|`, `|v| = size`.
     fn apply(&mut self, rest: &Forcing<T, D>, size: T) -> Option<T> {
         self.map_momentum();
-        self.divide_by_mass(rest);
+        self.divide_by_mass(rest, true);
         let rates: Vec<_> = (0..self.particles.len()).map(|p| self.stress_rate(p)).collect();
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         let assembly = Assembly {

@@ -138,14 +138,20 @@ where
     }
 
     fn assemble_particle_matrix(&mut self) {
-        let (basis, grid, matrix) = (&self.basis, &self.grid, &mut self.dofs.matrix);
+        let (basis, grid, matrix, seen) = (&self.basis, &self.grid, &mut self.dofs.matrix, &mut self.seen);
         matrix.clear();
         let particles = self.particles.position.iter().zip(&self.particles.mass);
-        for (p, (x, &mass)) in particles.enumerate() {
-            let cell = self.bins.cell_of(p);
-            basis.for_each(grid, cell, x, |i, phi_i, _| {
-                let m = mass * phi_i;
-                basis.for_each(grid, cell, x, |j, phi_j, _| matrix.add(i, j, m * phi_j));
+        for ((x, &mass), cell) in particles.zip(self.bins.cells()) {
+            seen.clear();
+            basis.for_each(grid, cell, x, |i, phi, _| {
+                let m = mass * phi;
+                matrix.add(i, i, m * phi);
+                for &(j, phi_j) in seen.iter() {
+                    // A DOF that is named twice meets itself in both orders.
+                    let both = if i == j { m + m } else { m };
+                    matrix.add(i.max(j), i.min(j), both * phi_j);
+                }
+                seen.push((i, phi));
             });
         }
     }

@@ -38,6 +38,18 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             (0..D).for_each(|axis| factor.solve(right, axis));
             return;
         }
+        if D == 1 && !fresh {
+            walls.for_each_held(|dof, axis, velocity, acceleration| {
+                self.matrix
+                    .move_known(dof, axis, pick(velocity, acceleration), right);
+            });
+            // Only then: what is known of one DOF also moves to the equations of other known ones.
+            walls.for_each_held(|dof, axis, velocity, acceleration| {
+                right[dof][axis] = pick(velocity, acceleration);
+            });
+            factor.solve(right, 0);
+            return;
+        }
         for axis in 0..D {
             factor.copy_from(&self.matrix);
             walls.for_each_held(|dof, held, velocity, acceleration| {

@@ -45,6 +45,10 @@ use crate::reconstruction::{Cloud, Cut, Reconstruction};
 use crate::scalar::Scalar;
 use spans::Spans;
 
+/// Most DOFs that a particle sees with the bases of this crate: four along each axis in three dimensions. Others may be
+/// told of more, in the first step.
+const MOST_SEEN: usize = 64;
+
 /// All that a [`Stepper`] is made of.
 #[derive(Clone, Debug)]
 pub struct Setup<T, const D: usize, B, R, L: ConstitutiveLaw<T, D>, P: Phase<T, D>>
@@ -99,6 +103,8 @@ where
     spans: Spans<T, D>,
     /// Part of each occupied cell that a wave crosses in this step; empty where nothing relaxes.
     crossed: Vec<T>,
+    /// DOFs that one particle sees, with their values; a place to note them while their matrix is summed.
+    seen: Vec<(usize, T)>,
     /// DOFs of each face, in the order of [`Face::all`].
     face_dofs: Vec<Vec<u32>>,
     velocity_mass: VelocityMass,
@@ -224,6 +230,7 @@ where
             motion: vec![[SVector::zeros(); 2]; liquid_count],
             spans,
             crossed: Vec::with_capacity(crossed_count),
+            seen: Vec::with_capacity(MOST_SEEN),
             face_dofs,
             velocity_mass,
             time: T::zero(),

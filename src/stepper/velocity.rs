@@ -39,7 +39,8 @@ where
             (sums, self.map_momentum())
         };
         self.diagnostics.record(&sums, mapped);
-        self.divide_by_mass(forcing);
+        // The particles' matrix is the one that the accelerations were solved with.
+        self.divide_by_mass(forcing, !R::PARTICLE_MATRIX);
     }
 
     /// `v_p += dt sum_i phi_i(x_p) a_i`; returns the particles' momentum.
@@ -271,8 +272,9 @@ where
         add_up(spans, vectors, momentum, 1);
     }
 
-    /// Momentum to velocity, with the told values at held DOFs. DOFs without mass are at rest.
-    pub(super) fn divide_by_mass(&mut self, forcing: &Forcing<T, D>) {
+    /// Momentum to velocity, with the told values at held DOFs. DOFs without mass are at rest. Without `fresh` matrix and
+    /// held DOFs are those last solved with.
+    pub(super) fn divide_by_mass(&mut self, forcing: &Forcing<T, D>, fresh: bool) {
         let own_lumped = !R::AMOUNTS_AT_PARTICLES && self.velocity_mass == VelocityMass::Lumped;
         if own_lumped || R::AMOUNTS_AT_PARTICLES && !R::PARTICLE_MATRIX {
             self.divide_by_lumped_mass();
@@ -280,7 +282,7 @@ where
             let pick = |velocity, _| velocity;
             let walls = Walls::of_solid(&self.face_dofs, forcing);
             self.dofs
-                .solve(Unknown::Velocity, self.velocity_mass, &walls, true, pick);
+                .solve(Unknown::Velocity, self.velocity_mass, &walls, fresh, pick);
         }
         let velocities = &mut self.dofs.velocity;
         Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, velocity, _| {
