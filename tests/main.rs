@@ -6,6 +6,7 @@ mod command;
 mod conservation;
 mod convergence;
 mod examples;
+mod hard_cases;
 mod identities;
 mod phase;
 mod scenes;
