@@ -110,22 +110,22 @@ pub enum StepError {
         /// Its value.
         value: f64,
     },
+    /// A stress beyond what the law has a meaning for.
+    #[error("step {step}: the stress of particle {particle} became {value} Pa; {allowed}")]
+    Stress {
+        /// Number of the step, from 1.
+        step: usize,
+        /// Index of the particle.
+        particle: usize,
+        /// The stress along axis 0 (Pa).
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
     /// The step size is not a positive number.
     #[error("the time step is {value} s; it must be positive and finite")]
     StepSize {
         /// The step asked for (s).
         value: f64,
     },
-}
-
-impl StepError {
-    /// A volume that is no longer a positive number.
-    pub(crate) fn volume<T: crate::scalar::Scalar>(step: usize, particle: usize, volume: T) -> Self {
-        Self::Invalid {
-            step,
-            particle,
-            name: "volume",
-            value: volume.primal(),
-        }
-    }
 }

@@ -144,6 +144,20 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         })
     }
 
+    /// Moves `x` a few roundings off an inner edge of its `cell`. Just there functions vanish whose slopes do not: a DOF that
+    /// nothing else reaches would have no mass, hence no velocity, and yet strain the particle.
+    pub(crate) fn keep_off_edges(&self, cell: &Cell<D>, x: &mut SVector<T, D>) {
+        for axis in 0..D {
+            let (i, gap) = (cell[axis] as usize, self.doubt[axis] * self.cell_size[axis]);
+            if i > 0 {
+                x[axis] = x[axis].max(self.edge(axis, i) + gap);
+            }
+            if i + 1 < self.cells[axis] {
+                x[axis] = x[axis].min(self.edge(axis, i + 1) - gap);
+            }
+        }
+    }
+
     /// The point of `cell` nearest to `x`. A few roundings are kept from the upper edge, which belongs to the next cell.
     #[inline]
     pub fn nearest_within(&self, cell: &Cell<D>, x: &SVector<T, D>) -> SVector<T, D> {

@@ -24,6 +24,14 @@ pub struct Hill<T> {
 impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hill<T> {
     type State = ();
 
+    const LIMITS: &'static str = "in one dimension Hill's law has a meaning below its modulus only, so take smaller steps or another law";
+
+    /// Also refuses a stress that is not a number.
+    #[inline(always)]
+    fn knows(&self, stress: &SMatrix<T, D, D>, _state: &()) -> bool {
+        D > 1 || stress[(0, 0)] < self.moduli.p_wave()
+    }
+
     #[inline(always)]
     fn large_strain(&self) -> bool {
         true

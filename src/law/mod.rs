@@ -28,6 +28,15 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Sync {
     /// `Default` is the undeformed state.
     type State: Copy + Default + Send + Sync;
 
+    /// What [`ConstitutiveLaw::knows`] asks for, for messages.
+    const LIMITS: &'static str = "its law knows no such stress";
+
+    /// Whether the law has a meaning at this stress. A step that leads beyond ends in an error.
+    #[inline(always)]
+    fn knows(&self, _stress: &SMatrix<T, D, D>, _state: &Self::State) -> bool {
+        true
+    }
+
     /// Whether volume and density follow the deformation (large strain) or stay as they were (small strain).
     fn large_strain(&self) -> bool;
 

@@ -103,6 +103,29 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
+    /// Lumps the rows of a matrix of masses whose diagonal holds less than the share `least` of their sum: what lies beside
+    /// the diagonal goes to it, in the rows of both DOFs, so that all sums of rows stay.
+    pub fn lump_weak(&mut self, least: T) {
+        for i in 0..self.order {
+            let band = i.saturating_sub(self.half_band)..(i + self.half_band + 1).min(self.order);
+            let sum = band
+                .clone()
+                .fold(T::zero(), |sum, j| sum + self.rows[self.at(i.max(j), i.min(j))]);
+            if self.rows[self.at(i, i)] < least * sum {
+                band.filter(|&j| j != i).for_each(|j| self.lump_entry(i, j));
+            }
+        }
+    }
+
+    fn lump_entry(&mut self, i: usize, j: usize) {
+        let at = self.at(i.max(j), i.min(j));
+        let entry = std::mem::replace(&mut self.rows[at], T::zero());
+        for k in [i, j] {
+            let diagonal = self.at(k, k);
+            self.rows[diagonal] += entry;
+        }
+    }
+
     /// Sum of all entries of the symmetric matrix.
     pub fn total(&self) -> T {
         match self.half_band {

@@ -176,6 +176,21 @@ pub(crate) fn relocate<T: Scalar, const D: usize>(
     Some(crossed)
 }
 
+/// The same for a particle that moves on: from an edge it is moved off ([`Grid::keep_off_edges`]).
+#[inline(always)]
+pub(crate) fn settle<T: Scalar, const D: usize>(
+    grid: &Grid<T, D>,
+    cell: &mut Cell<D>,
+    x: &mut SVector<T, D>,
+) -> Option<bool> {
+    if grid.clearly_holds(cell, x) {
+        return Some(false);
+    }
+    let crossed = relocate(grid, cell, x)?;
+    grid.keep_off_edges(cell, x);
+    Some(crossed)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,7 +5,7 @@ mod cast;
 mod lattice;
 mod movable;
 
-pub(crate) use bins::relocate;
+pub(crate) use bins::settle;
 pub use bins::{Bins, Outside};
 pub use lattice::lattice;
 #[cfg(feature = "scene")]

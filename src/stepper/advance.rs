@@ -3,12 +3,12 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Stepper;
-use super::spans::{Fault, Moved};
+use super::spans::{Fault, Flaw, Moved};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::law::ConstitutiveLaw;
 use crate::parallel::{PARTICLES, PerSpan, each_span, many_threads};
-use crate::particles::{Movable, relocate};
+use crate::particles::{Movable, settle};
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -52,8 +52,8 @@ where
                     }
                     particle
                         .advance(law, &(v * dt), &increment)
-                        .map_err(|volume| Fault::Volume(first + k, volume))?;
-                    let crossed = relocate(grid, cell, particle.position).ok_or(Fault::Left(first + k))?;
+                        .map_err(|flaw| Fault::Material(first + k, flaw))?;
+                    let crossed = settle(grid, cell, particle.position).ok_or(Fault::Left(first + k))?;
                     crossings += usize::from(crossed);
                     Ok(())
                 });
@@ -73,29 +73,33 @@ where
         self.spans.stale |= crossings > 0;
         match fault {
             None => Ok(()),
-            Some(Fault::Volume(p, volume)) => Err(StepError::volume(self.steps, p, volume)),
+            Some(Fault::Material(p, flaw)) => Err(flaw.error(self.steps, p, L::LIMITS)),
             Some(Fault::Left(p)) => Err(self.left(p)),
         }
     }
 }
 
 impl<T: Scalar, const D: usize, S: Copy, Q> Movable<'_, T, D, S, Q> {
-    /// Moves the particle by `path` and deforms it by `increment`; the volume is the error if it is no longer a positive number.
+    /// Moves the particle by `path` and deforms it by `increment`; the error is a volume that is no longer a positive number, or a stress
+    /// that the law does not know.
     #[inline(always)]
     pub(super) fn advance<L: ConstitutiveLaw<T, D, State = S>>(
         &mut self,
         law: &L,
         path: &SVector<T, D>,
         increment: &SMatrix<T, D, D>,
-    ) -> Result<(), T> {
+    ) -> Result<(), Flaw<T>> {
         *self.position += path;
         *self.displacement += path;
         law.update(increment, self.stress, self.state);
+        if !law.knows(self.stress, self.state) {
+            return Err(Flaw::Stress(self.stress[(0, 0)]));
+        }
         if law.large_strain() {
             let volume = *self.volume * determinant(&(SMatrix::identity() + increment));
             // Also refuses a volume that is not a number, or infinite.
             if !(volume > T::zero() && (volume * T::zero()).is_zero()) {
-                return Err(volume);
+                return Err(Flaw::Volume(volume));
             }
             *self.volume = volume;
         }

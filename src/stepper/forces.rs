@@ -13,6 +13,12 @@ use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Point, Reconstruction};
 use crate::scalar::Scalar;
 
+/// Share of its mass, along each axis, that a DOF's diagonal must hold to be solved for with its neighbours. The share is the mean value of
+/// its function over the particles: 2/3 in a full linear cell, nothing for a DOF that the first particle of a free end has
+/// just come to see. Such a DOF would have to carry that particle's whole acceleration, one over the function's value
+/// times as large, or round-off so magnified.
+const WEAK: f64 = 0.3;
+
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
 where
     T: Scalar,
@@ -104,7 +110,7 @@ where
         }
     }
 
-    /// `m_i = sum_p m_p phi_i`, and `M_ij = sum_p m_p phi_i phi_j` where the reconstruction wants it.
+    /// `m_i = sum_p m_p phi_i`, and `M_ij = sum_p m_p phi_i phi_j` where the reconstruction wants it, weak DOFs lumped.
     pub(super) fn lump_mass(&mut self) {
         if R::PARTICLE_MATRIX {
             self.assemble_particle_matrix();
@@ -154,6 +160,7 @@ where
                 seen.push((i, phi));
             });
         }
+        matrix.lump_weak(T::lit(WEAK.powi(D as i32)));
     }
 
     fn add_tractions(&mut self, forcing: &Forcing<T, D>) {

@@ -165,7 +165,7 @@ where
     /// Checks particles and phase and allocates all that steps will need.
     ///
     /// # Errors
-    /// If particle data are inconsistent or not finite, a particle is outside the grid, a constant of the phase makes no
+    /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside the grid, a constant of the phase makes no
     /// sense, or the reconstruction is of one phase only ([`Reconstruction::PARTICLE_MATRIX`]).
     pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
         let Setup {
@@ -175,11 +175,12 @@ where
             law,
             phase,
             velocity_mass,
-            particles,
+            mut particles,
             surface,
         } = setup;
         particles.validate()?;
         phase.validate()?;
+        refuse_unknown_stress(&law, &particles)?;
         if P::FLOWS && R::PARTICLE_MATRIX {
             return Err(SetupError::OnePhaseOnly);
         }
@@ -192,6 +193,9 @@ where
                 position: values(&particles.position[particle]),
             }
         })?;
+        for (cell, x) in bins.cells().iter().zip(&mut particles.position) {
+            grid.keep_off_edges(cell, x);
+        }
         // Overwritten walls would tear at an acceleration that knows nothing of them.
         let velocity_mass = match R::PARTICLE_MATRIX {
             true => VelocityMass::Constrained,
@@ -263,7 +267,7 @@ where
     /// One step of size `dt` (s) under `forcing`, the loads and boundary values of this step.
     ///
     /// # Errors
-    /// If a particle leaves the grid or its volume is no longer a positive number. The particles then hold the
+    /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the law. The particles then hold the
     /// state in which that was noticed.
     pub fn step(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
         if !dt.is_finite() || dt <= T::zero() {
@@ -441,6 +445,23 @@ where
     /// [`Stepper::bytes`] over the number of particles.
     pub fn bytes_per_particle(&self) -> f64 {
         self.bytes() as f64 / self.particles.len() as f64
+    }
+}
+
+/// Refuses a particle whose stress has no meaning to the law.
+fn refuse_unknown_stress<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>, P>(
+    law: &L,
+    particles: &Particles<T, D, L::State, P>,
+) -> Result<(), SetupError> {
+    let mut stresses = particles.stress.iter().zip(&particles.state);
+    match stresses.position(|(stress, state)| !law.knows(stress, state)) {
+        None => Ok(()),
+        Some(particle) => Err(SetupError::Value {
+            particle,
+            name: "stress",
+            value: particles.stress[particle][(0, 0)].primal(),
+            allowed: L::LIMITS,
+        }),
     }
 }
 

@@ -4,6 +4,7 @@ use nalgebra::SVector;
 
 use super::diagnostics::Sums;
 use crate::basis::BasisFamily;
+use crate::error::StepError;
 use crate::grid::{Cell, Grid};
 use crate::parallel::{CELLS, PARTICLES, SpanWindow, fit, many_threads};
 use crate::particles::Bins;
@@ -34,10 +35,39 @@ pub(super) struct Moved<T> {
 /// What can go wrong with a particle that moves.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Fault<T> {
-    /// Its volume is no longer a positive number.
-    Volume(usize, T),
+    /// Its material makes no sense any more.
+    Material(usize, Flaw<T>),
     /// It left the grid.
     Left(usize),
+}
+
+/// What can go wrong with the material of a particle.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Flaw<T> {
+    /// The volume is no longer a positive number.
+    Volume(T),
+    /// The law has no meaning at this stress.
+    Stress(T),
+}
+
+impl<T: Scalar> Flaw<T> {
+    /// As an error; `allowed` is what the law asks of a stress.
+    pub(super) fn error(self, step: usize, particle: usize, allowed: &'static str) -> StepError {
+        match self {
+            Self::Volume(volume) => StepError::Invalid {
+                step,
+                particle,
+                name: "volume",
+                value: volume.primal(),
+            },
+            Self::Stress(stress) => StepError::Stress {
+                step,
+                particle,
+                value: stress.primal(),
+                allowed,
+            },
+        }
+    }
 }
 
 impl<T: Scalar, const D: usize> Spans<T, D> {

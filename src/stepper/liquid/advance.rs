@@ -6,7 +6,7 @@ use super::super::Stepper;
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::law::ConstitutiveLaw;
-use crate::particles::relocate;
+use crate::particles::settle;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -49,8 +49,8 @@ where
             }
             particle
                 .advance(law, &(v * dt), &increment)
-                .map_err(|volume| StepError::volume(steps, p, volume))?;
-            match relocate(grid, cell, particle.position) {
+                .map_err(|flaw| flaw.error(steps, p, L::LIMITS))?;
+            match settle(grid, cell, particle.position) {
                 Some(crossed) => crossings += usize::from(crossed),
                 None => {
                     left = Some(p);
