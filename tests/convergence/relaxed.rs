@@ -20,9 +20,9 @@ const BAR: [(Basis, [f64; 4]); 3] = [
 /// Basis; column with 20 and with 4 particles per cell on its own grid, and with 100 cells, where its top leaves a cell half
 /// empty.
 const COLUMN: [(Basis, [f64; 3]); 3] = [
-    (LINEAR, [1.70e-4, 3.08e-4, 4.93e-5]),
-    (DUAL_DOMAIN, [1.38e-4, 1.43e-4, 4.44e-5]),
-    (BSPLINE, [7.51e-6, 3.35e-5, 2.72e-6]),
+    (LINEAR, [1.95e-4, 3.18e-4, 7.81e-5]),
+    (DUAL_DOMAIN, [1.37e-4, 1.41e-4, 4.38e-5]),
+    (BSPLINE, [6.17e-6, 3.38e-5, 2.17e-6]),
 ];
 
 fn stress_error(scene: &str, basis: Basis, set: &[&str]) -> f64 {
@@ -77,13 +77,14 @@ fn smaller_steps_do_not_relax_more() {
     }
 }
 
+/// The momentum of the column passes through zero, so it is measured against the sum of m |v|.
 #[test]
 fn mass_and_momentum_are_kept() {
-    for (scene, limit) in [("vibrating-bar-large", 1e-14), ("column-compaction", 1e-12)] {
+    for (scene, limit) in [("vibrating-bar-large", 1e-14), ("column-compaction", 1e-13)] {
         for (basis, ..) in BAR {
             let found = summary(scene, Method::new(basis, RELAXED), &[]).conservation["solid"];
             assert!(
-                found.mass <= limit && found.momentum <= limit,
+                found.mass <= limit && found.momentum_scaled <= limit,
                 "{scene}: {found:?}"
             );
         }

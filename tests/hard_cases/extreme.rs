@@ -80,15 +80,16 @@ const LIGHT: [(Variant, f64); 12] = [
     ((Linear, TaylorConsistent), 1.6e-3),
     ((DualDomain, TaylorConsistent), 3.9e-2),
     ((BSpline, TaylorConsistent), 4.0e-2),
-    ((Linear, Relaxed), 3.0e-4),
-    ((DualDomain, Relaxed), 2.5e-2),
-    ((BSpline, Relaxed), 2.3e-2),
+    ((Linear, Relaxed), 1.54e-2),
+    ((DualDomain, Relaxed), 2.19e-2),
+    ((BSpline, Relaxed), 5.22e-2),
 ];
 
 /// A light bar vibrates between a wall and a block a million times as dense, which is as good as a wall. Functions or slopes
 /// that reach over the interface make the bar longer by a part of a cell: linear functions alone do not.
 #[test]
 fn a_block_a_million_times_as_dense_is_a_wall() {
+    let mut missed = Vec::new();
     let mode = |x: f64| {
         if x < 1.0 {
             1e-3 * (std::f64::consts::PI * x).sin()
@@ -113,10 +114,9 @@ fn a_block_a_million_times_as_dense_is_a_wall() {
             size += exact * exact;
         }
         let error: f64 = (error / size).sqrt();
-        assert!(
-            (error / expected - 1.0).abs() < 0.05,
-            "{variant:?}: {error:e} instead of {expected:e}"
-        );
+        if (error / expected - 1.0).abs() > 0.05 {
+            missed.push(format!("{variant:?}: {error:e} instead of {expected:e}"));
+        }
         let block = found.velocity[80..]
             .iter()
             .fold(0.0_f64, |most, v| most.max(v[0].abs()));
@@ -127,6 +127,7 @@ fn a_block_a_million_times_as_dense_is_a_wall() {
             "{variant:?}: {kept:?}"
         );
     }
+    assert!(missed.is_empty(), "{missed:#?}");
 }
 
 fn neo() -> NeoHookean<f64> {
@@ -172,22 +173,23 @@ const DRAWN: [(Variant, f64, f64); 9] = [
     ((BSpline, TaylorLumped), 1.58e-2, 2.68e-2),
     ((DualDomain, TaylorConsistent), 2.37e-3, 1.91e-1),
     ((BSpline, TaylorConsistent), 4.24e-3, 1.66e-1),
-    ((Linear, Relaxed), 9.03e-2, 3.26e-2),
+    ((Linear, Relaxed), 9.03e-2, 3.90e-2),
     ((DualDomain, Relaxed), 3.53e-3, 2.45e-2),
-    ((BSpline, Relaxed), 1.84e-2, 8.12e-2),
+    ((BSpline, Relaxed), 1.84e-2, 6.24e-2),
 ];
 
 #[test]
 fn a_neo_hookean_bar_is_drawn_to_five_and_pressed_to_a_fifth() {
+    let mut missed = Vec::new();
     for (variant, five, fifth) in DRAWN {
         for (end, length, cells, expected) in [(5.0, 6.0, 24, five), (0.2, 1.5, 30, fifth)] {
             let error = drawn(variant, end, length, cells).unwrap();
-            assert!(
-                (error / expected - 1.0).abs() < 0.05,
-                "{variant:?}, {end}: {error:e} instead of {expected:e}"
-            );
+            if (error / expected - 1.0).abs() > 0.05 {
+                missed.push(format!("{variant:?}, {end}: {error:e} instead of {expected:e}"));
+            }
         }
     }
+    assert!(missed.is_empty(), "{missed:#?}");
     let pressed = drawn((Linear, TaylorConsistent), 0.2, 1.5, 30);
     assert!(
         matches!(pressed, Err(StepError::Invalid { name: "volume", .. })),

@@ -95,7 +95,7 @@ fn locked_pore_water_stiffens_the_bar_by_its_own_modulus() {
 }
 
 /// The relaxation takes the effective stress towards its fit and leaves the pressure: the sum is the dry bar's no longer, but
-/// the motion is still that of the stiffer bar.
+/// the motion is still that of the stiffer bar, within a thousandth.
 #[test]
 fn a_relaxed_step_takes_a_second_phase_too() {
     let mut wet = bar(
@@ -108,12 +108,9 @@ fn a_relaxed_step_takes_a_second_phase_too() {
         wet.step(2e-5, &fixed_ends()).unwrap();
         dry.step(2e-5, &fixed_ends()).unwrap();
     }
-    for (a, b) in wet
-        .particles()
-        .displacement
-        .iter()
-        .zip(&dry.particles().displacement)
-    {
-        approx::assert_abs_diff_eq!(a[0], b[0], epsilon = 1e-8);
+    let (wet, dry) = (&wet.particles().displacement, &dry.particles().displacement);
+    let largest = dry.iter().fold(0.0, |most: f64, u| most.max(u[0].abs()));
+    for (a, b) in wet.iter().zip(dry) {
+        approx::assert_abs_diff_eq!(a[0], b[0], epsilon = 1e-3 * largest);
     }
 }

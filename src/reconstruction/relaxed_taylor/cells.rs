@@ -63,7 +63,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedCell<T, D, NB> {
             let ends = |sign: T| {
                 let reach = particles().map(|&p| {
                     let p = p as usize;
-                    let size = cloud.volumes[p].powf(T::one() / T::count(D));
+                    let size = side(cloud.volumes[p], D);
                     (cloud.positions[p][axis] - centre) * sign + size / T::lit(2.0)
                 });
                 let reach = reach.fold(-half, T::max);
@@ -104,6 +104,15 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedCell<T, D, NB> {
         }
         let samples = local(cloud, cell, &self.patch).map(|(p, s)| (s, T::one(), value(p)));
         self.own.coefficients(samples, Q::zero())
+    }
+}
+
+/// Side of a cube of the given volume.
+fn side<T: Scalar>(volume: T, dimensions: usize) -> T {
+    match dimensions {
+        1 => volume,
+        2 => volume.sqrt(),
+        _ => volume.cbrt(),
     }
 }
 

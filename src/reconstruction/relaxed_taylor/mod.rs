@@ -12,6 +12,13 @@ use crate::scalar::Scalar;
 use crate::taylor::{CellFit, DEFAULT_TOLERANCE, shift_sums, taylor_functions};
 use cells::RelaxedCell;
 
+/// Wave speeds in neighbouring cells that differ by more than this factor are those of two materials.
+const ALIKE: f64 = 2.0;
+
+/// Largest share towards the fit through neighbours. At a wall that fit extrapolates from one side: near the critical step,
+/// where stresses change their sign from step to step, larger shares lower the limit (by 5 % where 0.1 was taken).
+const MOST_FROM_NEIGHBOURS: f64 = 0.03;
+
 /// Relaxation towards the fits, each a rate in units of one over the time in which a wave crosses a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relaxation<T> {
@@ -33,16 +40,11 @@ impl<T: Scalar> Default for Relaxation<T> {
 
 impl<T: Scalar> Relaxation<T> {
     /// Shares of the difference to each fit that a step takes away, in which a wave crosses the part `crossed` of a cell.
-    /// Together never more than all of it.
     #[inline(always)]
-    fn shares(&self, crossed: T, with_neighbours: bool) -> [T; 2] {
-        let neighbours = if with_neighbours {
-            self.neighbours
-        } else {
-            T::zero()
-        };
-        let scale = crossed / (T::one() + crossed * (self.own + neighbours));
-        [self.own * scale, neighbours * scale]
+    fn shares(&self, crossed: T) -> [T; 2] {
+        let [own, neighbours] = [self.own * crossed, self.neighbours * crossed];
+        let sum = T::one() + own + neighbours;
+        [own / sum, (neighbours / sum).min(T::lit(MOST_FROM_NEIGHBOURS))]
     }
 }
 
@@ -163,18 +165,24 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     /// Moves the values towards the fits of their own cell and through its neighbours.
     fn relax_towards_both<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, crossed: &[T], values: &mut [Q]) {
         self.sum_values(cloud, values);
-        for (place, ((cell, fits), &crossed)) in self.each_cell(cloud).zip(crossed).enumerate() {
-            let [own, neighbours] = self.relaxation.shares(crossed, fits.wide.is_some());
+        for (place, (cell, fits)) in self.each_cell(cloud).enumerate() {
             let mut sums = self.summed::<Q>(place);
             let seen = fits.own_coefficients(cloud, cell, sums, |p| values[p]);
-            let wide = fits.wide.map(|wide| {
-                cells::for_each_neighbour(cloud, place, |axis, above, other| {
-                    let mut theirs = self.summed::<Q>(other);
-                    shift_sums::<T, D, NB, Q>(&mut theirs, axis, above);
-                    (0..NB).for_each(|k| sums[k].add_scaled(T::one(), theirs[k]));
-                });
-                wide.coefficients_from_sums(sums)
+            let [mut slowest, mut fastest] = [crossed[place]; 2];
+            cells::for_each_neighbour(cloud, place, |axis, above, other| {
+                slowest = slowest.min(crossed[other]);
+                fastest = fastest.max(crossed[other]);
+                let mut theirs = self.summed::<Q>(other);
+                shift_sums::<T, D, NB, Q>(&mut theirs, axis, above);
+                (0..NB).for_each(|k| sums[k].add_scaled(T::one(), theirs[k]));
             });
+            // Stress may jump where the material changes.
+            let alike = fastest <= slowest * T::lit(ALIKE);
+            let wide = fits
+                .wide
+                .filter(|_| alike)
+                .map(|wide| wide.coefficients_from_sums(sums));
+            let [own, neighbours] = self.relaxation.shares(crossed[place]);
             for (p, s) in local(cloud, cell, &fits.patch) {
                 let old = values[p];
                 values[p].add_scaled(own, difference(&s, &seen, old));
@@ -195,7 +203,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         values: &mut [Q],
     ) {
         for ((cell, fits), &crossed) in self.each_cell(cloud).zip(crossed) {
-            let [share, _] = self.relaxation.shares(crossed, false);
+            let [share, _] = self.relaxation.shares(crossed);
             let weight = weights[first(cloud, cell)];
             let equal = local(cloud, cell, &fits.patch).all(|(p, _)| weights[p] == weight);
             let samples = local(cloud, cell, &fits.patch);
