@@ -77,17 +77,18 @@ fn smaller_steps_do_not_relax_more() {
     }
 }
 
-/// The momentum of the column passes through zero, so it is measured against the sum of m |v|.
+/// The momentum of the column passes near zero, so there it is measured against the sum of m |v|.
 #[test]
 fn mass_and_momentum_are_kept() {
-    for (scene, limit) in [("vibrating-bar-large", 1e-14), ("column-compaction", 1e-13)] {
-        for (basis, ..) in BAR {
-            let found = summary(scene, Method::new(basis, RELAXED), &[]).conservation["solid"];
-            assert!(
-                found.mass <= limit && found.momentum_scaled <= limit,
-                "{scene}: {found:?}"
-            );
-        }
+    for (basis, ..) in BAR {
+        let method = Method::new(basis, RELAXED);
+        let bar = summary("vibrating-bar-large", method, &[]).conservation["solid"];
+        assert!(bar.mass <= 1e-14 && bar.momentum <= 1e-14, "{basis}: {bar:?}");
+        let column = summary("column-compaction", method, &[]).conservation["solid"];
+        assert!(
+            column.mass <= 1e-13 && column.momentum_scaled <= 1e-13,
+            "{basis}: {column:?}"
+        );
     }
 }
 
