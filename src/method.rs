@@ -73,6 +73,17 @@ impl ReconstructionKind {
     }
 }
 
+impl ReconstructionKind {
+    /// Whether it exists for so many axes and phases: the spline along one axis, relaxed Taylor in one phase.
+    pub fn is_known(self, dimension: usize, phases: usize) -> bool {
+        match self {
+            Self::Shepard | Self::Taylor => true,
+            Self::RelaxedTaylor => phases == 1,
+            Self::Spline => dimension == 1,
+        }
+    }
+}
+
 /// A basis family with a reconstruction, written `basis+reconstruction`, with sub-points `dual-domain+shepard4`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Method {
@@ -85,17 +96,75 @@ pub struct Method {
     pub subpoints: u8,
 }
 
-/// What is done with a method's types. Written once, it compiles for every method.
-pub trait MethodVisitor<T: Scalar> {
+/// What is done with a method's types in `D` dimensions. Written once, it compiles for every method.
+pub trait MethodVisitor<T: Scalar, const D: usize = 1> {
     /// What comes out of it.
     type Output;
 
     /// Called with an instance of either type.
     fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
     where
-        B: BasisFamily<T, 1> + Send + 'static,
-        R: Reconstruction<T, 1> + Clone + Send + 'static;
+        B: BasisFamily<T, D> + Send + 'static,
+        R: Reconstruction<T, D> + Clone + Send + 'static;
 }
+
+/// The reconstructions that exist in `D` dimensions, by name: the number of Taylor functions is a type of each.
+pub trait KnownIn<const D: usize> {
+    /// Calls `visitor` with `basis` and the reconstruction's type; `None` if there is none in `D` dimensions.
+    fn with_basis<T, B, V>(self, basis: B, visitor: V) -> Option<V::Output>
+    where
+        T: Scalar,
+        B: BasisFamily<T, D> + Send + 'static,
+        V: MethodVisitor<T, D>;
+}
+
+impl KnownIn<1> for ReconstructionKind {
+    fn with_basis<T, B, V>(self, basis: B, visitor: V) -> Option<V::Output>
+    where
+        T: Scalar,
+        B: BasisFamily<T, 1> + Send + 'static,
+        V: MethodVisitor<T, 1>,
+    {
+        let degree = basis.degree();
+        Some(match self {
+            Self::Shepard => visitor.visit(basis, Shepard),
+            Self::Taylor => visitor.visit(basis, Taylor::<T, 1, 3>::for_degree(degree)),
+            Self::RelaxedTaylor => visitor.visit(basis, RelaxedTaylor::<T, 1, 3>::for_degree(degree)),
+            Self::Spline => visitor.visit(basis, CubicSpline::for_degree(degree)),
+        })
+    }
+}
+
+/// The global spline exists along one axis only.
+macro_rules! known_beyond_one_axis {
+    ($dimension:literal, $functions:literal) => {
+        impl KnownIn<$dimension> for ReconstructionKind {
+            fn with_basis<T, B, V>(self, basis: B, visitor: V) -> Option<V::Output>
+            where
+                T: Scalar,
+                B: BasisFamily<T, $dimension> + Send + 'static,
+                V: MethodVisitor<T, $dimension>,
+            {
+                let degree = basis.degree();
+                match self {
+                    Self::Shepard => Some(visitor.visit(basis, Shepard)),
+                    Self::Taylor => {
+                        let taylor = Taylor::<T, $dimension, $functions>::for_degree(degree);
+                        Some(visitor.visit(basis, taylor))
+                    }
+                    Self::RelaxedTaylor => {
+                        let taylor = RelaxedTaylor::<T, $dimension, $functions>::for_degree(degree);
+                        Some(visitor.visit(basis, taylor))
+                    }
+                    Self::Spline => None,
+                }
+            }
+        }
+    };
+}
+
+known_beyond_one_axis!(2, 6);
+known_beyond_one_axis!(3, 10);
 
 impl Method {
     /// The nine methods of the papers: {MPM, DDMPM, BSMPM} x {Shepard, TLS, spline}.
@@ -135,6 +204,12 @@ impl Method {
         ]
     };
 
+    /// Those of [`Method::ALL`] that exist in a scene of so many axes and phases.
+    pub fn all_in(dimension: usize, phases: usize) -> Vec<Self> {
+        let known = |method: &Self| method.reconstruction.is_known(dimension, phases);
+        Self::ALL.into_iter().filter(known).collect()
+    }
+
     /// A pair, with the particles themselves as their only sub-points.
     pub const fn new(basis: Basis, reconstruction: ReconstructionKind) -> Self {
         Self {
@@ -171,46 +246,45 @@ impl Method {
         }
     }
 
-    /// Calls `visitor` with the method's types, in 1-D. `None` for a degree that does not exist, or a number of sub-points that
-    /// the pair does not have.
-    pub fn dispatch<T: Scalar, V: MethodVisitor<T>>(self, visitor: V) -> Option<V::Output> {
+    /// Calls `visitor` with the method's types, in as many dimensions as it is for. `None` for a degree that does not exist, a
+    /// number of sub-points that the pair does not have, or a reconstruction that these dimensions do not have. Beyond one
+    /// dimension, where each takes seconds to compile, cubic B-splines and sub-points are left to callers that name the types.
+    pub fn dispatch<T, V, const D: usize>(self, visitor: V) -> Option<V::Output>
+    where
+        T: Scalar,
+        V: MethodVisitor<T, D>,
+        ReconstructionKind: KnownIn<D>,
+    {
         if self.subpoints != 1 {
             return self.with_sub_points(visitor);
         }
+        let reconstruction = self.reconstruction;
         match self.basis {
-            Basis::Linear => Some(self.with_basis(Linear, visitor)),
-            Basis::DualDomain => Some(self.with_basis(DualDomain::new(), visitor)),
-            Basis::BSpline { degree: 1 } => Some(self.with_basis(BSpline::<1>, visitor)),
-            Basis::BSpline { degree: 2 } => Some(self.with_basis(BSpline::<2>, visitor)),
-            Basis::BSpline { degree: 3 } => Some(self.with_basis(BSpline::<3>, visitor)),
+            Basis::Linear => reconstruction.with_basis(Linear, visitor),
+            // Known at compile time: beyond one dimension the hats are there once.
+            Basis::BSpline { degree: 1 } if const { D > 1 } => reconstruction.with_basis(Linear, visitor),
+            Basis::BSpline { degree: 3 } if const { D > 1 } => None,
+            Basis::DualDomain => reconstruction.with_basis(DualDomain::new(), visitor),
+            Basis::BSpline { degree: 1 } => reconstruction.with_basis(BSpline::<1>, visitor),
+            Basis::BSpline { degree: 2 } => reconstruction.with_basis(BSpline::<2>, visitor),
+            Basis::BSpline { degree: 3 } => reconstruction.with_basis(BSpline::<3>, visitor),
             Basis::BSpline { .. } => None,
         }
     }
 
     /// Here alone: one type for every number, and none for the pairs that are not published.
-    fn with_sub_points<T: Scalar, V: MethodVisitor<T>>(self, visitor: V) -> Option<V::Output> {
+    fn with_sub_points<T: Scalar, V: MethodVisitor<T, D>, const D: usize>(
+        self,
+        visitor: V,
+    ) -> Option<V::Output> {
         if (self.basis, self.reconstruction) != (Basis::DualDomain, ReconstructionKind::Shepard) {
+            return None;
+        }
+        if const { D > 1 } {
             return None;
         }
         let sub_points = SubPoints::new(self.subpoints.into()).ok()?;
         Some(visitor.visit(DualDomain::new(), sub_points))
-    }
-
-    fn with_basis<T, B, V>(self, basis: B, visitor: V) -> V::Output
-    where
-        T: Scalar,
-        B: BasisFamily<T, 1> + Send + 'static,
-        V: MethodVisitor<T>,
-    {
-        let degree = basis.degree();
-        match self.reconstruction {
-            ReconstructionKind::Shepard => visitor.visit(basis, Shepard),
-            ReconstructionKind::Taylor => visitor.visit(basis, Taylor::<T, 1, 3>::for_degree(degree)),
-            ReconstructionKind::RelaxedTaylor => {
-                visitor.visit(basis, RelaxedTaylor::<T, 1, 3>::for_degree(degree))
-            }
-            ReconstructionKind::Spline => visitor.visit(basis, CubicSpline::for_degree(degree)),
-        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! `materialpoint check`.
 
-use materialpoint::run::{MethodSummary, critical_step, mechanism, simulation};
+use materialpoint::run::{MethodSummary, critical_step, mechanism, simulation, simulation_in};
 use materialpoint::scene::StepSize;
-use materialpoint::stepper::Mechanism;
+use materialpoint::stepper::{Mechanism, Simulation};
 use serde_json::json;
 
 use super::Shared;
@@ -34,11 +34,32 @@ const TWO_PHASES: [&str; 9] = [
     "pore pressure",
 ];
 
+/// What a check tells of a simulation.
+struct Built {
+    particles: usize,
+    dofs: usize,
+    bytes_per_particle: f64,
+}
+
+impl Built {
+    fn of<const D: usize>(simulation: &dyn Simulation<D>) -> Self {
+        Self {
+            particles: simulation.particle_count(),
+            dofs: simulation.dof_count(),
+            bytes_per_particle: simulation.bytes_per_particle(),
+        }
+    }
+}
+
 pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     let scene = load(name, &shared.set)?;
     // One after the other: both need a simulation.
     let limit = critical_step(&scene)?;
-    let built = simulation(&scene)?;
+    let built = match scene.dimension() {
+        1 => Built::of(simulation(&scene)?.as_ref()),
+        2 => Built::of(simulation_in::<2>(&scene)?.as_ref()),
+        _ => Built::of(simulation_in::<3>(&scene)?.as_ref()),
+    };
     let critical = limit.map(|limit| limit.step);
     let method = MethodSummary::of(&scene);
     let mechanism = mechanism(&scene, limit.map_or(Mechanism::Wave, |limit| limit.mechanism));
@@ -57,11 +78,11 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
         return print_json(&json!({
             "title": scene.title,
             "method": method,
-            "particles": built.particle_count(),
-            "dofs": built.dof_count(),
+            "particles": built.particles,
+            "dofs": built.dofs,
             "unknowns_per_dof": unknowns,
             "fields_per_particle": fields,
-            "bytes_per_particle": built.bytes_per_particle(),
+            "bytes_per_particle": built.bytes_per_particle,
             "time_step": asked,
             "critical_time_step": critical,
             "mechanism": mechanism,
@@ -71,7 +92,7 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     let mut lines = vec![format!("{}: the scene is valid", scene.title)];
     lines.push(format!(
         "  particles     {}, each with {}",
-        built.particle_count(),
+        built.particles,
         fields.join(", ")
     ));
     if method.subpoints > 1 {
@@ -82,16 +103,17 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     }
     lines.push(format!(
         "  DOFs          {}, {unknowns} velocity {} each",
-        built.dof_count(),
-        match phases {
+        built.dofs,
+        match unknowns {
             1 => "component",
+            _ if phases == 1 => "components",
             _ => "components (solid and liquid)",
         }
     ));
     lines.push(format!(
         "  memory        {:.0} bytes per particle while it steps, {:.3} MB in all",
-        built.bytes_per_particle(),
-        built.bytes_per_particle() * built.particle_count() as f64 / 1e6
+        built.bytes_per_particle,
+        built.bytes_per_particle * built.particles as f64 / 1e6
     ));
     match critical {
         Some(limit) => {

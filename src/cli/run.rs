@@ -1,9 +1,9 @@
 //! `materialpoint run`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use materialpoint::output::Folder;
-use materialpoint::run::{Outcome, Summary, run};
+use materialpoint::run::{InSpace, Progress, Summary, run, run_in};
 use materialpoint::scene::{Scene, SceneError};
 use materialpoint::study::write_fields;
 
@@ -25,18 +25,38 @@ pub(super) fn run_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     let scene = load(name, &shared.set)?;
     let folder = Folder::create(&shared.out)?;
     let progress_bar = bar(shared.quiet, 0, "steps");
-    let outcome = run(&scene, Some(&folder), &mut |progress| {
+    let mut progress = |progress: Progress| {
         progress_bar.set_length(progress.steps as u64);
         progress_bar.set_position(progress.step as u64);
-    });
+    };
+    let done = match scene.dimension() {
+        1 => on_one_axis(&scene, &folder, &mut progress),
+        2 => in_space::<2>(&scene, &folder, &mut progress),
+        _ => in_space::<3>(&scene, &folder, &mut progress),
+    };
     progress_bar.finish_and_clear();
-    let mut outcome = outcome?;
-    outcome.files.push(write_fields(&outcome, &folder)?);
-    warn(&outcome.summary.warnings);
+    let (summary, files) = done?;
+    warn(&summary.warnings);
     if shared.json {
-        return print_json(&outcome.summary);
+        return print_json(&summary);
     }
-    print(&summary_text(&outcome))
+    print(&summary_text(&summary, &files))
+}
+
+type Done = Result<(Summary, Vec<PathBuf>), Failure>;
+
+fn on_one_axis(scene: &Scene, folder: &Folder, progress: &mut dyn FnMut(Progress)) -> Done {
+    let mut outcome = run(scene, Some(folder), progress)?;
+    outcome.files.push(write_fields(&outcome, folder)?);
+    Ok((outcome.summary, outcome.files))
+}
+
+fn in_space<const D: usize>(scene: &Scene, folder: &Folder, progress: &mut dyn FnMut(Progress)) -> Done
+where
+    Scene: InSpace<D>,
+{
+    let outcome = run_in::<D>(scene, Some(folder), progress)?;
+    Ok((outcome.summary, outcome.files))
 }
 
 /// Warnings go to standard error, so that standard output stays what was asked for.
@@ -47,7 +67,7 @@ pub(super) fn warn(warnings: &[String]) {
 }
 
 /// The summary for people.
-fn summary_text(outcome: &Outcome) -> String {
+fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
     let Summary {
         title,
         method,
@@ -66,7 +86,7 @@ fn summary_text(outcome: &Outcome) -> String {
         conservation,
         energy,
         warnings: _,
-    } = &outcome.summary;
+    } = summary;
     let mut lines = vec![title.clone()];
     lines.push(format!(
         "  method        {} (degree {}) + {}{}, {} velocity mass, {} strain, {}{}",
@@ -113,17 +133,22 @@ fn summary_text(outcome: &Outcome) -> String {
             errors.mass, errors.momentum, errors.momentum_scaled
         ));
     }
+    let unit = match method.dimension {
+        1 => "J/m2",
+        2 => "J/m",
+        _ => "J",
+    };
     match (energy.lowest_ratio, energy.highest_ratio) {
         (Some(lowest), Some(highest)) => lines.push(format!(
-            "  energy        {:.6e} J/m2 at the end; {lowest:.6} to {highest:.6} of the initial on the way",
+            "  energy        {:.6e} {unit} at the end; {lowest:.6} to {highest:.6} of the initial on the way",
             energy.last
         )),
         _ => lines.push(format!(
-            "  energy        {:.6e} J/m2 at the end; none at the start",
+            "  energy        {:.6e} {unit} at the end; none at the start",
             energy.last
         )),
     }
-    for file in &outcome.files {
+    for file in files {
         lines.push(format!("  wrote         {}", file.display()));
     }
     lines.join("\n") + "\n"

@@ -30,7 +30,7 @@ pub(super) fn default_study(shared: &Shared, flags: &StudyFlags) -> Result<(), F
 
 pub(super) fn study_scene(name: &str, shared: &Shared, flags: &StudyFlags) -> Result<(), Failure> {
     let scene = load(name, &shared.set)?;
-    let own: usize = scene.grid.cells.iter().product();
+    let own = scene.grid.cells.first().copied().unwrap_or(1);
     report(&scene, shared, flags, &[own.div_ceil(2), own, 2 * own])
 }
 
@@ -88,23 +88,23 @@ fn plan(scene: &Scene, flags: &StudyFlags, default_cells: &[usize]) -> Result<Pl
 }
 
 fn methods(scene: &Scene, list: &str) -> Result<Vec<Method>, Failure> {
-    let one_phase = scene.material.phases.count() == 1;
+    let (dimension, phases) = (scene.dimension(), scene.material.phases.count());
     if list == "all" {
-        return Ok(match one_phase {
-            true => Method::ALL.to_vec(),
-            false => Method::NINE.to_vec(),
-        });
+        return Ok(Method::all_in(dimension, phases));
     }
     let methods: Vec<_> = list
         .split(',')
         .map(|name| method(name.trim()))
         .collect::<Result<_, _>>()?;
-    let relaxed = |method: &&Method| method.reconstruction == ReconstructionKind::RelaxedTaylor;
-    match methods.iter().find(relaxed) {
-        Some(method) if !one_phase => Err(Failure::Input(format!(
+    let unknown = |method: &&Method| !method.reconstruction.is_known(dimension, phases);
+    match methods.iter().find(unknown) {
+        Some(method) if dimension == 1 => Err(Failure::Input(format!(
             "--methods: {method} knows one phase only so far; with material.phases = 2 write shepard, taylor or spline"
         ))),
-        _ => Ok(methods),
+        Some(method) => Err(Failure::Input(format!(
+            "--methods: {method} exists in one dimension only, and the scene has {dimension}; write shepard, taylor or relaxed-taylor"
+        ))),
+        None => Ok(methods),
     }
 }
 

@@ -14,32 +14,72 @@ pub fn lattice<T: Scalar, const D: usize>(
     max: &SVector<T, D>,
     per_cell: [usize; D],
 ) -> Vec<(SVector<T, D>, T)> {
-    lattice_points(grid, min, max, per_cell).collect()
+    let lattice = Lattice::new(grid, min, max, per_cell);
+    let volume = lattice.volume();
+    (0..lattice.len())
+        .map(|k| (lattice.position(k), volume))
+        .collect()
 }
 
-/// The same one by one; knows how many will come.
-pub(crate) fn lattice_points<T: Scalar, const D: usize>(
-    grid: &Grid<T, D>,
-    min: &SVector<T, D>,
-    max: &SVector<T, D>,
-    per_cell: [usize; D],
-) -> impl ExactSizeIterator<Item = (SVector<T, D>, T)> + use<T, D> {
-    let min = *min;
-    let extent = max - min;
-    let counts: [usize; D] = std::array::from_fn(|a| {
-        let wanted = (extent[a] / grid.cell_size()[a]).primal() * per_cell[a] as f64;
-        wanted.round().max(1.0) as usize
-    });
-    let volume = (0..D).fold(T::one(), |v, a| v * extent[a] / T::count(counts[a]));
-    let half = T::one() / T::lit(2.0);
-    (0..counts.iter().product()).map(move |mut index| {
-        let position = SVector::from_fn(|a, _| {
-            let k = index % counts[a];
-            index /= counts[a];
-            min[a] + extent[a] * (T::count(k) + half) / T::count(counts[a])
+/// The lattice of [`lattice`], particle by particle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lattice<T, const D: usize> {
+    min: SVector<T, D>,
+    extent: SVector<T, D>,
+    counts: [usize; D],
+}
+
+impl<T: Scalar, const D: usize> Lattice<T, D> {
+    pub(crate) fn new(
+        grid: &Grid<T, D>,
+        min: &SVector<T, D>,
+        max: &SVector<T, D>,
+        per_cell: [usize; D],
+    ) -> Self {
+        let extent = max - min;
+        let counts = std::array::from_fn(|a| {
+            let wanted = (extent[a] / grid.cell_size()[a]).primal() * per_cell[a] as f64;
+            wanted.round().max(1.0) as usize
         });
-        (position, volume)
-    })
+        Self {
+            min: *min,
+            extent,
+            counts,
+        }
+    }
+
+    /// Number of particles.
+    pub(crate) fn len(&self) -> usize {
+        self.counts.iter().product()
+    }
+
+    /// Distance of neighbours along each axis (m).
+    pub(crate) fn spacing(&self) -> SVector<T, D> {
+        SVector::from_fn(|a, _| self.extent[a] / T::count(self.counts[a]))
+    }
+
+    /// Volume of each particle.
+    pub(crate) fn volume(&self) -> T {
+        (0..D).fold(T::one(), |v, a| v * self.extent[a] / T::count(self.counts[a]))
+    }
+
+    /// Place of a particle along each axis.
+    pub(crate) fn place(&self, mut index: usize) -> [usize; D] {
+        self.counts.map(|count| {
+            let k = index % count;
+            index /= count;
+            k
+        })
+    }
+
+    /// Position of a particle (m).
+    pub(crate) fn position(&self, index: usize) -> SVector<T, D> {
+        let half = T::one() / T::lit(2.0);
+        let place = self.place(index);
+        SVector::from_fn(|a, _| {
+            self.min[a] + self.extent[a] * (T::count(place[a]) + half) / T::count(self.counts[a])
+        })
+    }
 }
 
 #[cfg(test)]

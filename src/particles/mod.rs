@@ -7,9 +7,9 @@ mod movable;
 
 pub(crate) use bins::settle;
 pub use bins::{Bins, Outside};
-pub use lattice::lattice;
 #[cfg(feature = "scene")]
-pub(crate) use lattice::lattice_points;
+pub(crate) use lattice::Lattice;
+pub use lattice::lattice;
 pub(crate) use movable::{Movable, Movables};
 
 use nalgebra::{SMatrix, SVector};

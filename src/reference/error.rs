@@ -53,6 +53,15 @@ pub enum ReferenceError {
         highest: usize,
     },
 
+    /// A motion whose material would turn inside out.
+    #[error("amplitude {amplitude} m folds the material; expected less than {largest} m")]
+    Folds {
+        /// The amplitude, m.
+        amplitude: f64,
+        /// The bound, m.
+        largest: f64,
+    },
+
     /// A time lies before the start or is not finite.
     #[error("time must be finite and at least 0 s, not {time} s")]
     InvalidTime {

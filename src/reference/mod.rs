@@ -1,5 +1,5 @@
-//! Exact and converged solutions of one-dimensional dynamics of a one-phase continuum and of saturated soil, against
-//! which the errors of material point runs are measured.
+//! Exact and converged solutions for a one-phase continuum and for saturated soil, against which the errors of material point
+//! runs are measured.
 //!
 //! SI units, stresses positive in tension, `f64` throughout. Every solution is asked by *material* point: the state at
 //! time `t` of the point that was at `x0` at time 0, because that is what a material point of the method carries.
@@ -14,6 +14,7 @@
 //! | [`StandingWave`](two_phase::StandingWave) | closed form | damped waves in saturated soil, small strain |
 //! | [`SaturatedColumn`](two_phase::SaturatedColumn) | closed form | saturated column under its weight, at rest |
 //! | [`LagrangianSoil`](two_phase::LagrangianSoil) | converged numerically, with an estimate of its own error | saturated soil in motion, any elastic law |
+//! | [`Manufactured`] | closed form | waves in a box on rollers, finite strain, any dimension |
 //!
 //! Soil has its own state and trait, see [`two_phase`].
 //!
@@ -24,6 +25,7 @@ mod check;
 mod error;
 mod lagrangian_bar;
 mod lobatto;
+mod space;
 mod static_column;
 pub mod two_phase;
 mod uniaxial_law;
@@ -31,6 +33,7 @@ mod vibrating_bar;
 
 pub use error::ReferenceError;
 pub use lagrangian_bar::{BarProblem, End, LagrangianBar, Resolution};
+pub use space::{FieldReference, FieldState, Manufactured};
 pub use static_column::{StaticColumn, Strain};
 pub use uniaxial_law::{Hill, Hyperelastic, InvertibleLaw, Linear, Logarithmic, NeoHookean, UniaxialLaw};
 pub use vibrating_bar::VibratingBar;

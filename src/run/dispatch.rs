@@ -4,70 +4,59 @@ use nalgebra::SVector;
 
 use super::error::RunError;
 use super::initial::{Initial, initial};
-use super::rate_law::RateLaw;
+use super::space::InSpace;
 use crate::basis::BasisFamily;
 use crate::error::{GridError, SetupError};
 use crate::grid::Grid;
-use crate::law::{ConstitutiveLaw, Hill, LinearElastic, Logarithmic, Moduli, NeoHookean};
-use crate::method::MethodVisitor;
+use crate::law::ConstitutiveLaw;
+use crate::method::{KnownIn, MethodVisitor, ReconstructionKind};
 use crate::particles::Particles;
 use crate::phase::{OnePhase, Phase, PoreLiquid, TwoPhase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::scene::{Law, Phases, ScalarKind, Scene};
+use crate::scene::{Phases, Scene};
 use crate::stepper::{Setup, Simulation, Stepper, SurfacePoint};
 
-/// Builds the stepper a scene asks for.
-pub(super) fn build(scene: &Scene) -> Result<Box<dyn Simulation<1>>, RunError> {
-    let grid = grid(scene)?;
-    let start = Start {
-        scene,
-        initial: initial(scene, &grid)?,
-    };
-    match scene.method.scalar {
-        ScalarKind::F64 => start.with_scalar::<f64>(),
-        ScalarKind::F32 => start.with_scalar::<f32>(),
-    }
+/// A stepper of the chosen types.
+pub type Built<const D: usize> = Result<Box<dyn Simulation<D>>, RunError>;
+
+/// The scene's grid.
+pub(super) fn grid<T: Scalar, const D: usize>(scene: &Scene) -> Result<Grid<T, D>, GridError> {
+    let bound = |values: &[f64]| SVector::from(per_axis(values, f64::NAN).map(T::lit));
+    Grid::new(
+        bound(&scene.grid.min),
+        bound(&scene.grid.max),
+        per_axis(&scene.grid.cells, 0),
+    )
 }
 
-fn grid<T: Scalar>(scene: &Scene) -> Result<Grid<T, 1>, GridError> {
-    let bound = |values: &[f64]| SVector::from([T::lit(values.first().copied().unwrap_or(f64::NAN))]);
-    let cells = scene.grid.cells.first().copied().unwrap_or(0);
-    Grid::new(bound(&scene.grid.min), bound(&scene.grid.max), [cells])
+/// The entries of a list with one for each axis; `missing` where there is none.
+pub(super) fn per_axis<A: Copy, const D: usize>(values: &[A], missing: A) -> [A; D] {
+    std::array::from_fn(|axis| values.get(axis).copied().unwrap_or(missing))
 }
 
-struct Start<'a> {
-    scene: &'a Scene,
-    initial: Initial,
+/// What a stepper starts from, before its types are known.
+pub struct Start<'a, const D: usize> {
+    pub(super) scene: &'a Scene,
+    initial: Initial<D>,
 }
 
-impl Start<'_> {
-    fn with_scalar<T: Scalar>(self) -> Result<Box<dyn Simulation<1>>, RunError> {
-        let uniaxial = |modulus: f64| Moduli::uniaxial(T::lit(modulus));
-        match self.scene.material.law {
-            Law::LinearElastic { youngs_modulus } => {
-                let moduli = uniaxial(youngs_modulus)?;
-                self.with_law(RateLaw::LinearElastic(LinearElastic { moduli }))
-            }
-            Law::Hill { youngs_modulus } => {
-                let moduli = uniaxial(youngs_modulus)?;
-                self.with_law(RateLaw::Hill(Hill { moduli }))
-            }
-            Law::NeoHookean { youngs_modulus } => {
-                let moduli = uniaxial(youngs_modulus)?;
-                self.with_law(NeoHookean { moduli })
-            }
-            Law::Logarithmic { youngs_modulus } => {
-                let moduli = uniaxial(youngs_modulus)?;
-                self.with_law(RateLaw::Logarithmic(Logarithmic { moduli }))
-            }
-        }
+impl<'a, const D: usize> Start<'a, D>
+where
+    Scene: InSpace<D>,
+    ReconstructionKind: KnownIn<D>,
+{
+    /// Of a run with steps of `dt` (s), or of none.
+    pub(super) fn new(scene: &'a Scene, dt: f64) -> Result<Self, RunError> {
+        let initial = initial(scene, &grid(scene)?, dt)?;
+        Ok(Self { scene, initial })
     }
 
-    fn with_law<T, L>(self, law: L) -> Result<Box<dyn Simulation<1>>, RunError>
+    /// The stepper once scalar and law are types.
+    pub(super) fn with_law<T, L>(self, law: L) -> Built<D>
     where
         T: Scalar,
-        L: ConstitutiveLaw<T, 1> + Clone + 'static,
+        L: ConstitutiveLaw<T, D> + Clone + 'static,
     {
         let method = self.scene.method.method();
         let built = method.dispatch(WithLaw { start: self, law });
@@ -76,22 +65,22 @@ impl Start<'_> {
 }
 
 /// Builds the stepper once basis and reconstruction are types.
-struct WithLaw<'a, L> {
-    start: Start<'a>,
+struct WithLaw<'a, L, const D: usize> {
+    start: Start<'a, D>,
     law: L,
 }
 
-impl<T, L> MethodVisitor<T> for WithLaw<'_, L>
+impl<T, L, const D: usize> MethodVisitor<T, D> for WithLaw<'_, L, D>
 where
     T: Scalar,
-    L: ConstitutiveLaw<T, 1> + Clone + 'static,
+    L: ConstitutiveLaw<T, D> + Clone + 'static,
 {
-    type Output = Result<Box<dyn Simulation<1>>, RunError>;
+    type Output = Built<D>;
 
     fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
     where
-        B: BasisFamily<T, 1> + Send + 'static,
-        R: Reconstruction<T, 1> + Clone + Send + 'static,
+        B: BasisFamily<T, D> + Send + 'static,
+        R: Reconstruction<T, D> + Clone + Send + 'static,
     {
         let Self { start, law } = self;
         let Initial {
@@ -106,8 +95,8 @@ where
         };
         match start.scene.material.phases {
             Phases::One { .. } => rest.stepper(basis, reconstruction, OnePhase, particles.into_cast()),
-            // Known at compile time: no stepper of two phases is built for a reconstruction that has none.
-            Phases::Two(_) if R::PARTICLE_MATRIX => Err(SetupError::OnePhaseOnly.into()),
+            // Known at compile time: no stepper of two phases is built for a reconstruction or dimension that has none.
+            Phases::Two(_) if const { R::PARTICLE_MATRIX || D > 1 } => Err(SetupError::OnePhaseOnly.into()),
             Phases::Two(soil) => {
                 let mut particles = particles.into_cast();
                 particles.phase = liquid.into_iter().map(cast_liquid).collect();
@@ -126,19 +115,19 @@ struct Rest<'a, L> {
 }
 
 impl<L> Rest<'_, L> {
-    fn stepper<T, B, R, P>(
+    fn stepper<T, B, R, P, const D: usize>(
         self,
         basis: B,
         reconstruction: R,
         phase: P,
-        particles: Particles<T, 1, L::State, P::Particle>,
-    ) -> Result<Box<dyn Simulation<1>>, RunError>
+        particles: Particles<T, D, L::State, P::Particle>,
+    ) -> Built<D>
     where
         T: Scalar,
-        B: BasisFamily<T, 1> + 'static,
-        R: Reconstruction<T, 1> + Clone + 'static,
-        L: ConstitutiveLaw<T, 1> + Clone + 'static,
-        P: Phase<T, 1> + Clone + 'static,
+        B: BasisFamily<T, D> + 'static,
+        R: Reconstruction<T, D> + Clone + 'static,
+        L: ConstitutiveLaw<T, D> + Clone + 'static,
+        P: Phase<T, D> + Clone + 'static,
     {
         let stepper = Stepper::new(Setup {
             grid: grid(self.scene)?,
@@ -154,7 +143,7 @@ impl<L> Rest<'_, L> {
     }
 }
 
-fn cast_liquid<T: Scalar>(liquid: PoreLiquid<f64, 1>) -> PoreLiquid<T, 1> {
+fn cast_liquid<T: Scalar, const D: usize>(liquid: PoreLiquid<f64, D>) -> PoreLiquid<T, D> {
     PoreLiquid {
         velocity: liquid.velocity.map(T::lit),
         pressure: T::lit(liquid.pressure),

@@ -29,6 +29,30 @@ pub enum RunError {
     /// No such combination of basis and reconstruction.
     #[error("method {0} does not exist")]
     NoSuchMethod(Method),
+    /// Another number of axes than the caller counts on.
+    #[error("the scene has {found} axes; expected {expected}")]
+    Dimension {
+        /// Axes of the scene.
+        found: usize,
+        /// Axes asked for.
+        expected: usize,
+    },
+    /// A law that these dimensions do not have.
+    #[error("material.law.{law} does not exist in {dimension} dimensions")]
+    NoSuchLaw {
+        /// Its name.
+        law: &'static str,
+        /// Axes of the scene.
+        dimension: usize,
+    },
+    /// A body whose shape leaves out every particle of its box.
+    #[error(
+        "body.{index}.inside: no particle of the body's box is inside; expected a shape that holds some, or more particles_per_cell"
+    )]
+    EmptyBody {
+        /// Number of the body, from 0.
+        index: usize,
+    },
     /// `step = "auto"` on particles that nothing resists.
     #[error(
         "time.step = \"auto\": nothing resists a motion of these particles, so no step is critical; give a number"
@@ -39,7 +63,7 @@ pub enum RunError {
         "the energy at the start is {value}; expected smaller velocities and stresses (linear-elastic at large strain bears less than youngs_modulus)"
     )]
     NoEnergyAtStart {
-        /// What came out (J/m2).
+        /// What came out (J; in one dimension J/m2, in two J/m).
         value: f64,
     },
     /// Numbers that grew beyond what a float can hold, or a stress beyond what the law can bear.
@@ -47,7 +71,7 @@ pub enum RunError {
     NoEnergy {
         /// Number of the step, from 1.
         step: usize,
-        /// What came out (J/m2).
+        /// What came out (J; in one dimension J/m2, in two J/m).
         value: f64,
         /// Time step of the run (s).
         dt: f64,

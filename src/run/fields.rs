@@ -1,5 +1,7 @@
 //! The fields of a run, by name.
 
+use nalgebra::{SMatrix, SVector};
+
 use super::norms::Exact;
 use crate::particles::Particles;
 use crate::phase::PoreLiquid;
@@ -11,16 +13,18 @@ pub struct FieldValues {
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Values.
+    /// Components of each value: 1 for a scalar, `D` for a vector, `D D` for a stress (column by column).
+    pub components: usize,
+    /// Values, the components of each particle together.
     pub values: Vec<f64>,
-    /// Reference; empty without one.
+    /// Reference, likewise; empty without one.
     pub exact: Vec<f64>,
 }
 
 /// Displacement, velocity and stress, and those of the liquid if there is one.
-pub(super) fn fields(
-    particles: &Particles<f64, 1>,
-    liquid: &[PoreLiquid<f64, 1>],
+pub(super) fn fields<const D: usize>(
+    particles: &Particles<f64, D>,
+    liquid: &[PoreLiquid<f64, D>],
     exact: &Exact,
 ) -> Vec<FieldValues> {
     let mut all = Vec::new();
@@ -29,16 +33,17 @@ pub(super) fn fields(
 }
 
 /// The same one by one, so that no more than one need be in memory.
-pub(super) fn for_each_field(
-    particles: &Particles<f64, 1>,
-    liquid: &[PoreLiquid<f64, 1>],
+pub(super) fn for_each_field<const D: usize>(
+    particles: &Particles<f64, D>,
+    liquid: &[PoreLiquid<f64, D>],
     exact: &Exact,
     mut f: impl FnMut(FieldValues),
 ) {
-    let mut field = |name, unit, values, exact: &[f64]| {
+    let mut field = |name, unit, components, values, exact: &[f64]| {
         f(FieldValues {
             name,
             unit,
+            components,
             values,
             exact: exact.to_vec(),
         });
@@ -47,18 +52,37 @@ pub(super) fn for_each_field(
         true => ["displacement", "velocity", "stress"],
         false => ["solid_displacement", "solid_velocity", "effective_stress"],
     };
-    let displacement = particles.displacement.iter().map(|u| u[0]).collect();
-    field(names[0], "m", displacement, &exact.displacement);
-    let velocity = particles.velocity.iter().map(|v| v[0]).collect();
-    field(names[1], "m/s", velocity, &exact.velocity);
+    field(
+        names[0],
+        "m",
+        D,
+        vectors(particles.displacement.iter()),
+        &exact.displacement,
+    );
+    field(
+        names[1],
+        "m/s",
+        D,
+        vectors(particles.velocity.iter()),
+        &exact.velocity,
+    );
     if !liquid.is_empty() {
-        let velocity = liquid.iter().map(|l| l.velocity[0]).collect();
-        field("liquid_velocity", "m/s", velocity, &exact.liquid_velocity);
+        let velocities = vectors(liquid.iter().map(|l| &l.velocity));
+        field("liquid_velocity", "m/s", D, velocities, &exact.liquid_velocity);
     }
-    let stress = particles.stress.iter().map(|s| s[(0, 0)]).collect();
-    field(names[2], "Pa", stress, &exact.stress);
+    field(names[2], "Pa", D * D, matrices(&particles.stress), &exact.stress);
     if !liquid.is_empty() {
         let pressure = liquid.iter().map(|l| l.pressure).collect();
-        field("pore_pressure", "Pa", pressure, &exact.pore_pressure);
+        field("pore_pressure", "Pa", 1, pressure, &exact.pore_pressure);
     }
+}
+
+/// Components one after the other.
+pub(super) fn vectors<'a, const D: usize>(values: impl Iterator<Item = &'a SVector<f64, D>>) -> Vec<f64> {
+    values.flat_map(|v| v.iter().copied()).collect()
+}
+
+/// Components one after the other, column by column.
+pub(super) fn matrices<const D: usize>(values: &[SMatrix<f64, D, D>]) -> Vec<f64> {
+    values.iter().flat_map(|m| m.iter().copied()).collect()
 }

@@ -2,71 +2,97 @@
 
 use nalgebra::SVector;
 
+use super::dispatch::per_axis;
 use super::error::RunError;
-use super::state::{InitialState, set};
+use super::space::InSpace;
+use super::state::set;
 use super::surface::surfaces;
 use crate::grid::Grid;
-use crate::particles::{Particles, lattice_points};
+use crate::particles::{Lattice, Particles};
 use crate::phase::PoreLiquid;
 use crate::scene::{Body, Scene};
 use crate::stepper::SurfacePoint;
 
 /// Particles, their liquid, and the surfaces that the stepper must know.
 #[derive(Default)]
-pub(super) struct Initial {
-    pub(super) particles: Particles<f64, 1>,
+pub(super) struct Initial<const D: usize> {
+    pub(super) particles: Particles<f64, D>,
     /// In two phases one for each particle.
-    pub(super) liquid: Vec<PoreLiquid<f64, 1>>,
+    pub(super) liquid: Vec<PoreLiquid<f64, D>>,
     pub(super) surface: Vec<SurfacePoint<f64>>,
 }
 
-/// Fills the bodies, gives the particles their initial values and finds the surfaces.
-pub(super) fn initial(scene: &Scene, grid: &Grid<f64, 1>) -> Result<Initial, RunError> {
+/// The particles of one body, and where each is in its lattice.
+pub(super) struct Filling<const D: usize> {
+    pub(super) lattice: Lattice<f64, D>,
+    /// Particles of the lattice that are kept, ascending.
+    pub(super) kept: Vec<usize>,
+    pub(super) particles: Particles<f64, D>,
+}
+
+/// Fills the bodies, gives the particles their initial values and finds the surfaces; the run takes steps of `dt` (s).
+pub(super) fn initial<const D: usize>(
+    scene: &Scene,
+    grid: &Grid<f64, D>,
+    dt: f64,
+) -> Result<Initial<D>, RunError>
+where
+    Scene: InSpace<D>,
+{
     let mut all = Initial::default();
-    for body in &scene.bodies {
-        let first = all.particles.len();
-        let (particles, liquid) = fill(scene, body, grid)?;
-        append(&mut all.particles, particles);
+    for (index, body) in scene.bodies.iter().enumerate() {
+        let mut filling = fill(scene, body, grid)?;
+        if filling.kept.is_empty() {
+            return Err(RunError::EmptyBody { index });
+        }
+        let state = scene.initial_state(body, grid, dt)?;
+        let flows = scene.material.phases.count() == 2;
+        let mut liquid = Vec::with_capacity(if flows { filling.kept.len() } else { 0 });
+        for p in 0..filling.kept.len() {
+            let values = state(&filling.particles.position[p])?;
+            set(&mut filling.particles, p, &values);
+            if flows {
+                liquid.push(values.liquid());
+            }
+        }
+        all.surface
+            .extend(surfaces(scene, body, &filling, all.particles.len()));
+        append(&mut all.particles, filling.particles);
         move_to(&mut all.liquid, liquid);
-        let range = first..all.particles.len();
-        all.surface.extend(surfaces(scene, body, &all.particles, range));
     }
     Ok(all)
 }
 
-fn fill(
-    scene: &Scene,
-    body: &Body,
-    grid: &Grid<f64, 1>,
-) -> Result<(Particles<f64, 1>, Vec<PoreLiquid<f64, 1>>), RunError> {
-    let (min, max) = (first(&body.min), first(&body.max));
-    let per_cell = body.particles_per_cell.first().copied().unwrap_or(1);
-    let mut random = fastrand::Rng::with_seed(body.seed);
-    let points = lattice_points(grid, &SVector::from([min]), &SVector::from([max]), [per_cell]);
-    let points = points.map(|(mut x, spacing)| {
-        // Within its own sub-interval, so that particles keep their order and the body its volume.
-        x[0] += body.jitter * spacing * (random.f64() - 0.5);
-        (x, spacing)
-    });
-    let mut particles = Particles::from_points(points, scene.material.solid_density());
-    let flows = scene.material.phases.count() == 2;
-    let mut liquid = Vec::with_capacity(if flows { particles.len() } else { 0 });
-    let state = InitialState::new(scene, body, grid)?;
-    for p in 0..particles.len() {
-        let values = state.at(particles.position[p][0])?;
-        set(&mut particles, p, &values);
-        if flows {
-            liquid.push(values.liquid());
+fn fill<const D: usize>(scene: &Scene, body: &Body, grid: &Grid<f64, D>) -> Result<Filling<D>, RunError> {
+    let corner = |values: &[f64]| SVector::from(per_axis(values, f64::NAN));
+    let (min, max) = (corner(&body.min), corner(&body.max));
+    let lattice = Lattice::new(grid, &min, &max, per_axis(&body.particles_per_cell, 1));
+    let mut kept = Vec::with_capacity(lattice.len());
+    for k in 0..lattice.len() {
+        let inside = match &body.inside {
+            Some(expression) => expression.eval_at(lattice.position(k).as_slice())? > 0.0,
+            None => true,
+        };
+        if inside {
+            kept.push(k);
         }
     }
-    Ok((particles, liquid))
+    let mut random = fastrand::Rng::with_seed(body.seed);
+    let (spacing, volume) = (lattice.spacing(), lattice.volume());
+    let points = kept.iter().map(|&k| {
+        // Within its own sub-box, so that particles keep their order and the body its volume.
+        let shift = spacing.map(|spacing| body.jitter * spacing * (random.f64() - 0.5));
+        (lattice.position(k) + shift, volume)
+    });
+    let particles = Particles::from_points(points, scene.material.solid_density());
+    Ok(Filling {
+        lattice,
+        kept,
+        particles,
+    })
 }
 
-pub(super) fn first(values: &[f64]) -> f64 {
-    values.first().copied().unwrap_or(f64::NAN)
-}
-
-fn append(all: &mut Particles<f64, 1>, more: Particles<f64, 1>) {
+fn append<const D: usize>(all: &mut Particles<f64, D>, more: Particles<f64, D>) {
     move_to(&mut all.initial_position, more.initial_position);
     move_to(&mut all.position, more.position);
     move_to(&mut all.displacement, more.displacement);

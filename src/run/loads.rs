@@ -8,7 +8,11 @@ use crate::stepper::{FaceCondition, Forcing, PoreCondition};
 
 /// Evaluates the scene's expressions for the step from `time` to `time + dt`: loads at its start, told
 /// velocities in its middle, where Euler-Cromer's velocity lives (but never before time zero).
-pub(super) fn forcing(scene: &Scene, time: f64, dt: f64) -> Result<Forcing<f64, 1>, RunError> {
+pub(super) fn forcing<const D: usize>(
+    scene: &Scene,
+    time: f64,
+    dt: f64,
+) -> Result<Forcing<f64, D>, RunError> {
     let mut forcing = Forcing::none();
     if let Some(body_force) = &scene.body_force {
         forcing.body_force = vector(body_force, time)?;
@@ -17,9 +21,14 @@ pub(super) fn forcing(scene: &Scene, time: f64, dt: f64) -> Result<Forcing<f64, 
         let condition = match &boundary.kind {
             BoundaryKind::Free => FaceCondition::Free,
             BoundaryKind::Fixed => FaceCondition::fixed(),
+            BoundaryKind::Roller => FaceCondition::roller(boundary.face.axis),
+            BoundaryKind::Frictional(coefficient) => FaceCondition::Frictional {
+                coefficient: *coefficient,
+            },
             BoundaryKind::Velocity(velocity) => {
                 let (before, after) = ((time - dt / 2.0).max(0.0), time + dt / 2.0);
-                let (start, end) = (vector(velocity, before)?, vector(velocity, after)?);
+                let (start, end): (SVector<f64, D>, _) =
+                    (vector(velocity, before)?, vector(velocity, after)?);
                 FaceCondition::moving(end, (end - start) / (after - before))
             }
             BoundaryKind::Traction(traction) => FaceCondition::Traction(vector(traction, time)?),
@@ -35,8 +44,8 @@ pub(super) fn forcing(scene: &Scene, time: f64, dt: f64) -> Result<Forcing<f64, 
     Ok(forcing)
 }
 
-fn vector(expressions: &[Expression], time: f64) -> Result<SVector<f64, 1>, RunError> {
-    let mut value = SVector::<f64, 1>::zeros();
+fn vector<const D: usize>(expressions: &[Expression], time: f64) -> Result<SVector<f64, D>, RunError> {
+    let mut value = SVector::<f64, D>::zeros();
     for (component, expression) in value.iter_mut().zip(expressions) {
         *component = expression.eval_time(time)?;
     }

@@ -4,12 +4,13 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use super::Progress;
-use super::critical_step;
+use super::critical_step_in;
 use super::error::RunError;
 use super::limits::remedy;
 use super::loads::forcing;
 use super::particle_table::particle_table;
 use super::schedule::Schedule;
+use super::space::InSpace;
 use crate::output::Folder;
 use crate::scene::{ParticleOutput, Scene};
 use crate::stepper::Simulation;
@@ -61,26 +62,33 @@ impl EnergyRange {
 }
 
 /// Steps `simulation` to the end, writing particles when the scene asks for it, and sampling the energy `samples` times.
-pub(super) fn march(
+pub(super) fn march<const D: usize>(
     scene: &Scene,
-    simulation: &mut dyn Simulation<1>,
+    simulation: &mut dyn Simulation<D>,
     schedule: &Schedule,
     samples: usize,
     folder: Option<&Folder>,
     files: &mut Vec<PathBuf>,
     progress: &mut dyn FnMut(Progress),
-) -> Result<March, RunError> {
+) -> Result<March, RunError>
+where
+    Scene: InSpace<D>,
+{
     let mut march = March::default();
     let start = march.energy.sample(simulation.energy().total());
     start.map_err(|value| RunError::NoEnergyAtStart { value })?;
     let steps = schedule.steps;
+    let driver = scene.driver()?;
     let sample_every = steps.div_ceil(samples.max(1)).max(1);
     let mut begun = Instant::now();
     for step in 0..steps {
         let dt = schedule.size(step);
         let forcing = forcing(scene, schedule.time(step), dt)?;
+        if let Some(driver) = &driver {
+            simulation.set_body_forces(&|x| driver.body_force(x, schedule.time(step)));
+        }
         if let Err(source) = simulation.step(dt, &forcing) {
-            let (critical, remedy) = limit(scene);
+            let (critical, remedy) = limit::<D>(scene);
             return Err(RunError::Stopped {
                 source,
                 dt,
@@ -94,7 +102,7 @@ pub(super) fn march(
             // The clock runs for the step loop only.
             march.wall += begun.elapsed();
             if let Err(value) = march.energy.sample(simulation.energy().total()) {
-                let (critical, remedy) = limit(scene);
+                let (critical, remedy) = limit::<D>(scene);
                 return Err(RunError::NoEnergy {
                     step: done,
                     value,
@@ -116,8 +124,11 @@ pub(super) fn march(
 }
 
 /// Largest stable step (s) of the initial layout, if it can be found, and what helps against a larger one.
-fn limit(scene: &Scene) -> (Option<f64>, &'static str) {
-    match critical_step(scene).ok().flatten() {
+fn limit<const D: usize>(scene: &Scene) -> (Option<f64>, &'static str)
+where
+    Scene: InSpace<D>,
+{
+    match critical_step_in::<D>(scene).ok().flatten() {
         Some(limit) => (Some(limit.step), remedy(limit.mechanism)),
         None => (None, ""),
     }

@@ -12,6 +12,7 @@ mod particle_table;
 mod rate_law;
 mod reference;
 mod schedule;
+mod space;
 mod state;
 mod summary;
 mod surface;
@@ -20,11 +21,11 @@ pub use error::RunError;
 pub use fields::FieldValues;
 pub use limits::mechanism;
 pub use norms::{ErrorNorms, Exact};
+pub use space::InSpace;
 pub use summary::{ConservationSummary, EnergySummary, MethodSummary, Summary};
 
 use std::path::PathBuf;
 
-use dispatch::build;
 use loads::forcing;
 use march::{ENERGY_SAMPLES, march};
 use particle_table::particle_table;
@@ -45,22 +46,22 @@ pub struct Progress {
     pub steps: usize,
 }
 
-/// What a run leaves behind.
+/// What a run in `D` dimensions leaves behind.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct Outcome<const D: usize = 1> {
     /// Figures of the run.
     pub summary: Summary,
     /// Particles at the end.
-    pub particles: Particles<f64, 1>,
+    pub particles: Particles<f64, D>,
     /// Their liquid; empty in one phase.
-    pub liquid: Vec<PoreLiquid<f64, 1>>,
+    pub liquid: Vec<PoreLiquid<f64, D>>,
     /// Reference at the particles; empty without one.
     pub exact: Exact,
     /// Files written.
     pub files: Vec<PathBuf>,
 }
 
-impl Outcome {
+impl<const D: usize> Outcome<D> {
     /// Every field at the particles, with its reference.
     pub fn fields(&self) -> Vec<FieldValues> {
         fields::fields(&self.particles, &self.liquid, &self.exact)
@@ -72,7 +73,7 @@ impl Outcome {
     }
 }
 
-/// Runs `scene`, writing particles to `folder` if there is one, and calls `progress` now and then.
+/// Runs a `scene` of one dimension, writing particles to `folder` if there is one, and calls `progress` now and then.
 ///
 /// # Errors
 /// See [`RunError`]. Files written before the error stay.
@@ -81,10 +82,26 @@ pub fn run(
     folder: Option<&Folder>,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Outcome, RunError> {
+    run_in::<1>(scene, folder, progress)
+}
+
+/// [`run`] in `D` dimensions, which are those of the scene.
+///
+/// # Errors
+/// See [`RunError`]. Files written before the error stay.
+pub fn run_in<const D: usize>(
+    scene: &Scene,
+    folder: Option<&Folder>,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Outcome<D>, RunError>
+where
+    Scene: InSpace<D>,
+{
+    check_dimension::<D>(scene)?;
     // Before the run's own simulation is there: the critical step takes one as large.
     let schedule = Schedule::new(scene)?;
-    let warnings = limits::warnings(scene, &schedule, || critical_step(scene))?;
-    let mut simulation = build(scene)?;
+    let warnings = limits::warnings(scene, &schedule, || critical_step_in(scene))?;
+    let mut simulation = scene.build(schedule.dt)?;
     let mut files = Vec::new();
     let march = march(
         scene,
@@ -101,7 +118,7 @@ pub fn run(
     if let (ParticleOutput::Csv, Some(folder)) = (scene.output.particles, folder) {
         files.push(particle_table(scene, &particles, &liquid).write_csv(folder, "particles.csv")?);
     }
-    let exact = Exact::of(scene, &particles, &schedule)?;
+    let exact = scene.exact(&particles, &schedule)?;
     summary.errors = ErrorNorms::all(&particles, &liquid, &exact);
     Ok(Outcome {
         summary,
@@ -112,13 +129,39 @@ pub fn run(
     })
 }
 
+fn check_dimension<const D: usize>(scene: &Scene) -> Result<(), RunError> {
+    match scene.dimension() {
+        found if found == D => Ok(()),
+        found => Err(RunError::Dimension { found, expected: D }),
+    }
+}
+
+/// Calls a function of the dimension, `f::<D>(arguments)`, with that of the scene.
+macro_rules! in_dimension {
+    ($scene:expr, $f:ident($($argument:expr),* $(,)?)) => {
+        match $scene.dimension() {
+            1 => $f::<1>($($argument),*),
+            2 => $f::<2>($($argument),*),
+            _ => $f::<3>($($argument),*),
+        }
+    };
+}
+pub(crate) use in_dimension;
+
 /// Time (s) that the steps of `scene` take, and nothing else: no file, no energy on the way, no errors.
 ///
 /// # Errors
 /// See [`RunError`].
 pub fn step_loop_seconds(scene: &Scene) -> Result<f64, RunError> {
+    in_dimension!(scene, step_loop_seconds_in(scene))
+}
+
+fn step_loop_seconds_in<const D: usize>(scene: &Scene) -> Result<f64, RunError>
+where
+    Scene: InSpace<D>,
+{
     let schedule = Schedule::new(scene)?;
-    let mut simulation = build(scene)?;
+    let mut simulation = scene.build(schedule.dt)?;
     let mut files = Vec::new();
     let march = march(
         scene,
@@ -137,14 +180,33 @@ pub fn step_loop_seconds(scene: &Scene) -> Result<f64, RunError> {
 /// # Errors
 /// If the scene cannot be set up.
 pub fn critical_step(scene: &Scene) -> Result<Option<CriticalStep<f64>>, RunError> {
-    // Only which faces are held matters, not how they move.
-    Ok(build(scene)?.into_critical_step(&forcing(scene, 0.0, 1.0)?))
+    in_dimension!(scene, critical_step_in(scene))
 }
 
-/// A freshly built simulation of the scene, to look at or to step by hand.
+fn critical_step_in<const D: usize>(scene: &Scene) -> Result<Option<CriticalStep<f64>>, RunError>
+where
+    Scene: InSpace<D>,
+{
+    // Only which faces are held matters, not how they move.
+    Ok(scene.build(0.0)?.into_critical_step(&forcing(scene, 0.0, 1.0)?))
+}
+
+/// A freshly built simulation of a scene of one dimension, to look at or to step by hand.
 ///
 /// # Errors
 /// If the scene cannot be set up.
 pub fn simulation(scene: &Scene) -> Result<Box<dyn Simulation<1>>, RunError> {
-    build(scene)
+    simulation_in(scene)
+}
+
+/// [`simulation`] in `D` dimensions, which are those of the scene.
+///
+/// # Errors
+/// If the scene cannot be set up.
+pub fn simulation_in<const D: usize>(scene: &Scene) -> Result<Box<dyn Simulation<D>>, RunError>
+where
+    Scene: InSpace<D>,
+{
+    check_dimension::<D>(scene)?;
+    scene.build(0.0)
 }

@@ -5,14 +5,15 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::error::RunError;
-use super::fields::for_each_field;
-use super::reference::{Solution, solution};
+use super::fields::{FieldValues, for_each_field};
+use super::reference::Solution;
 use super::schedule::Schedule;
 use crate::particles::Particles;
 use crate::phase::PoreLiquid;
+use crate::reference::FieldReference;
 use crate::scene::Scene;
 
-/// Reference values at the particles, in their order; empty where the scene names no reference, and those of the liquid in
+/// Reference values at the particles, in their order, the components of a vector or tensor together; empty where the scene names no reference, and those of the liquid in
 /// one phase.
 #[derive(Clone, Debug, Default)]
 pub struct Exact {
@@ -29,9 +30,10 @@ pub struct Exact {
 }
 
 impl Exact {
-    /// Evaluates the scene's reference at the particles' material points.
-    pub(super) fn of(
+    /// Evaluates a solution along one axis at the particles' material points.
+    pub(super) fn on_one_axis(
         scene: &Scene,
+        solution: Solution,
         particles: &Particles<f64, 1>,
         schedule: &Schedule,
     ) -> Result<Self, RunError> {
@@ -39,16 +41,15 @@ impl Exact {
         let start = scene.reference.map_or(0.0, |reference| reference.start());
         let [middle, end] = [schedule.velocity_time(), schedule.end].map(|time| start + time);
         let mut exact = Self::default();
-        match solution(scene)? {
-            None => {}
-            Some(Solution::One(mut solution)) => {
+        match solution {
+            Solution::One(mut solution) => {
                 solution.advance(middle)?;
                 exact.velocity = points.iter().map(|&x| solution.at(x).velocity).collect();
                 solution.advance(end)?;
                 let states = points.iter().map(|&x| solution.at(x));
                 (exact.displacement, exact.stress) = states.map(|s| (s.displacement, s.stress)).unzip();
             }
-            Some(Solution::Two(mut solution)) => {
+            Solution::Two(mut solution) => {
                 solution.advance(middle)?;
                 let states = points.iter().map(|&x| solution.at(x));
                 (exact.velocity, exact.liquid_velocity) =
@@ -62,6 +63,23 @@ impl Exact {
             }
         }
         Ok(exact)
+    }
+
+    /// Evaluates a field at the particles' material points.
+    pub(super) fn in_space<const D: usize>(
+        reference: &dyn FieldReference<D>,
+        particles: &Particles<f64, D>,
+        schedule: &Schedule,
+    ) -> Self {
+        let mut exact = Self::default();
+        for x in &particles.initial_position {
+            let velocity = reference.at(x, schedule.velocity_time()).velocity;
+            exact.velocity.extend(velocity.iter());
+            let state = reference.at(x, schedule.end);
+            exact.displacement.extend(state.displacement.iter());
+            exact.stress.extend(state.stress.iter());
+        }
+        exact
     }
 }
 
@@ -82,31 +100,38 @@ fn is_not_finite(value: &f64) -> bool {
 }
 
 impl ErrorNorms {
-    fn new(values: impl Iterator<Item = f64>, exact: &[f64]) -> Self {
+    /// Of vectors and tensors the Euclidean and Frobenius norms count.
+    fn new(field: &FieldValues) -> Self {
+        let components = field.components.max(1);
         let (mut errors, mut squares, mut max) = (0.0, 0.0, 0.0_f64);
-        for (value, exact) in values.zip(exact) {
-            let error = value - exact;
-            errors += error * error;
-            squares += exact * exact;
-            max = max.max(error.abs());
+        let particles = field
+            .values
+            .chunks(components)
+            .zip(field.exact.chunks(components));
+        for (value, exact) in particles {
+            let pairs = value.iter().zip(exact);
+            let error: f64 = pairs.map(|(value, exact)| (value - exact).powi(2)).sum();
+            errors += error;
+            squares += exact.iter().map(|exact| exact * exact).sum::<f64>();
+            max = max.max(error.sqrt());
         }
         Self {
-            rms: (errors / exact.len() as f64).sqrt(),
+            rms: (errors / (field.exact.len() / components) as f64).sqrt(),
             relative_l2: (errors / squares).sqrt(),
             max,
         }
     }
 
     /// Errors of the fields that a reference knows.
-    pub(super) fn all(
-        particles: &Particles<f64, 1>,
-        liquid: &[PoreLiquid<f64, 1>],
+    pub(super) fn all<const D: usize>(
+        particles: &Particles<f64, D>,
+        liquid: &[PoreLiquid<f64, D>],
         exact: &Exact,
     ) -> BTreeMap<&'static str, Self> {
         let mut norms = BTreeMap::new();
         for_each_field(particles, liquid, exact, |field| {
             if !field.exact.is_empty() {
-                norms.insert(field.name, Self::new(field.values.iter().copied(), &field.exact));
+                norms.insert(field.name, Self::new(&field));
             }
         });
         norms

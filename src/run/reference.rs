@@ -3,10 +3,11 @@
 mod two_phase;
 
 use super::error::RunError;
+use crate::law::Moduli;
 use crate::reference::two_phase::TwoPhaseReference;
 use crate::reference::{
-    Hill, LagrangianBar, Linear, Logarithmic, NeoHookean, Reference, ReferenceError, StaticColumn, Strain,
-    VibratingBar,
+    FieldReference, Hill, LagrangianBar, Linear, Logarithmic, Manufactured, NeoHookean, Reference,
+    ReferenceError, StaticColumn, Strain, VibratingBar,
 };
 use crate::scene::{Against, Law, ReferenceSpec, Scene};
 
@@ -47,6 +48,26 @@ pub(super) fn solution(scene: &Scene) -> Result<Option<Solution>, RunError> {
     Ok(Some(Solution::One(solution)))
 }
 
+/// The scene's solution in space, if it names one.
+pub(super) fn field_reference<const D: usize>(
+    scene: &Scene,
+) -> Result<Option<Box<dyn FieldReference<D>>>, RunError> {
+    let Some(ReferenceSpec::Manufactured { amplitude }) = scene.reference else {
+        return Ok(None);
+    };
+    let Law::NeoHookean {
+        youngs_modulus,
+        poissons_ratio,
+    } = scene.material.law
+    else {
+        return Ok(None);
+    };
+    let moduli = Moduli::from_young(youngs_modulus, poissons_ratio)?;
+    let grid = super::dispatch::grid(scene)?;
+    let solution = Manufactured::new(&grid, moduli, scene.material.solid_density(), amplitude)?;
+    Ok(Some(Box::new(solution)))
+}
+
 struct Problem {
     origin: f64,
     length: f64,
@@ -60,20 +81,20 @@ impl Problem {
     fn bar(&self, velocity: f64) -> Built {
         let (length, density) = (self.length, self.density);
         match self.law {
-            Law::LinearElastic { youngs_modulus } => {
+            Law::LinearElastic { youngs_modulus, .. } => {
                 let bar = VibratingBar::new(length, density, youngs_modulus, velocity)?;
                 Ok(Box::new(bar.with_origin(self.origin)?))
             }
-            Law::Hill { youngs_modulus } => {
+            Law::Hill { youngs_modulus, .. } => {
                 let bar = LagrangianBar::vibrating_bar(length, density, velocity, Hill { youngs_modulus })?;
                 Ok(Box::new(bar.with_origin(self.origin)?))
             }
-            Law::NeoHookean { youngs_modulus } => {
+            Law::NeoHookean { youngs_modulus, .. } => {
                 let law = neo_hookean(youngs_modulus);
                 let bar = LagrangianBar::vibrating_bar(length, density, velocity, law)?;
                 Ok(Box::new(bar.with_origin(self.origin)?))
             }
-            Law::Logarithmic { youngs_modulus } => {
+            Law::Logarithmic { youngs_modulus, .. } => {
                 let law = Logarithmic { youngs_modulus };
                 let bar = LagrangianBar::vibrating_bar(length, density, velocity, law)?;
                 Ok(Box::new(bar.with_origin(self.origin)?))
@@ -83,7 +104,7 @@ impl Problem {
 
     fn static_column(&self, body_force: f64) -> Built {
         let (strain, youngs_modulus) = match self.law {
-            Law::LinearElastic { youngs_modulus } => (Strain::Small, youngs_modulus),
+            Law::LinearElastic { youngs_modulus, .. } => (Strain::Small, youngs_modulus),
             law => (Strain::Large, law.youngs_modulus()),
         };
         let column = StaticColumn::new(self.length, self.density, youngs_modulus, body_force, strain)?;
@@ -93,22 +114,22 @@ impl Problem {
     fn column(&self, body_force: f64, ramp: f64) -> Built {
         let (length, density, origin) = (self.length, self.density, self.origin);
         match self.law {
-            Law::LinearElastic { youngs_modulus } => {
+            Law::LinearElastic { youngs_modulus, .. } => {
                 let law = Linear { youngs_modulus };
                 let column = LagrangianBar::column(length, density, body_force, ramp, law)?;
                 Ok(Box::new(column.with_origin(origin)?))
             }
-            Law::Hill { youngs_modulus } => {
+            Law::Hill { youngs_modulus, .. } => {
                 let law = Hill { youngs_modulus };
                 let column = LagrangianBar::column(length, density, body_force, ramp, law)?;
                 Ok(Box::new(column.with_origin(origin)?))
             }
-            Law::NeoHookean { youngs_modulus } => {
+            Law::NeoHookean { youngs_modulus, .. } => {
                 let law = neo_hookean(youngs_modulus);
                 let column = LagrangianBar::column(length, density, body_force, ramp, law)?;
                 Ok(Box::new(column.with_origin(origin)?))
             }
-            Law::Logarithmic { youngs_modulus } => {
+            Law::Logarithmic { youngs_modulus, .. } => {
                 let law = Logarithmic { youngs_modulus };
                 let column = LagrangianBar::column(length, density, body_force, ramp, law)?;
                 Ok(Box::new(column.with_origin(origin)?))

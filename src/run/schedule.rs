@@ -1,24 +1,30 @@
 //! When the steps of a run begin and end.
 
-use super::critical_step;
+use super::critical_step_in;
 use super::error::RunError;
+use super::space::InSpace;
 use crate::scene::{Scene, StepSize};
 
 /// Steps of one size; the last one is shorter where the end asks for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Schedule {
+pub struct Schedule {
     pub(super) steps: usize,
     pub(super) dt: f64,
     pub(super) end: f64,
 }
 
 impl Schedule {
-    pub(super) fn new(scene: &Scene) -> Result<Self, RunError> {
+    pub(super) fn new<const D: usize>(scene: &Scene) -> Result<Self, RunError>
+    where
+        Scene: InSpace<D>,
+    {
         let end = scene.time.end;
         match scene.time.step {
             StepSize::Fixed(dt) => Ok(Self::fixed(dt, end)),
             StepSize::Auto { safety } => {
-                let critical = critical_step(scene)?.ok_or(RunError::NoCriticalStep)?.step;
+                let critical = critical_step_in::<D>(scene)?
+                    .ok_or(RunError::NoCriticalStep)?
+                    .step;
                 let steps = (end / (safety * critical)).ceil().max(1.0);
                 Ok(Self {
                     steps: steps as usize,

@@ -1,6 +1,6 @@
 //! What a body starts with: expressions of the scene, or the state of a reference; at the particles or interpolated.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use super::error::RunError;
 use super::reference::{Solution, solution};
@@ -14,54 +14,56 @@ use crate::reference::two_phase::{TwoPhaseReference, TwoPhaseState};
 use crate::scene::{Body, Expression, Initialise, Scene};
 
 /// Fields at one place; one phase has no liquid.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Values {
-    displacement: f64,
-    velocity: f64,
-    stress: f64,
-    liquid_velocity: f64,
-    pore_pressure: f64,
+#[derive(Clone, Copy, Debug)]
+pub struct Values<const D: usize> {
+    pub(super) displacement: SVector<f64, D>,
+    pub(super) velocity: SVector<f64, D>,
+    pub(super) stress: SMatrix<f64, D, D>,
+    pub(super) liquid_velocity: SVector<f64, D>,
+    pub(super) pore_pressure: f64,
 }
 
-impl Values {
-    pub(super) fn liquid(&self) -> PoreLiquid<f64, 1> {
+impl<const D: usize> Values<D> {
+    pub(super) fn liquid(&self) -> PoreLiquid<f64, D> {
         PoreLiquid {
-            velocity: SVector::from([self.liquid_velocity]),
+            velocity: self.liquid_velocity,
             pressure: self.pore_pressure,
         }
     }
+}
 
+impl Values<1> {
     fn to_vector(self) -> SVector<f64, 5> {
         SVector::from([
-            self.displacement,
-            self.velocity,
-            self.stress,
-            self.liquid_velocity,
+            self.displacement[0],
+            self.velocity[0],
+            self.stress[(0, 0)],
+            self.liquid_velocity[0],
             self.pore_pressure,
         ])
     }
 }
 
-impl From<SVector<f64, 5>> for Values {
+impl From<SVector<f64, 5>> for Values<1> {
     fn from(values: SVector<f64, 5>) -> Self {
         let [displacement, velocity, stress, liquid_velocity, pore_pressure] = values.into();
         Self {
-            displacement,
-            velocity,
-            stress,
-            liquid_velocity,
+            displacement: [displacement].into(),
+            velocity: [velocity].into(),
+            stress: [stress].into(),
+            liquid_velocity: [liquid_velocity].into(),
             pore_pressure,
         }
     }
 }
 
-impl From<TwoPhaseState> for Values {
+impl From<TwoPhaseState> for Values<1> {
     fn from(state: TwoPhaseState) -> Self {
         Self {
-            displacement: state.solid_displacement,
-            velocity: state.solid_velocity,
-            stress: state.effective_stress,
-            liquid_velocity: state.liquid_velocity,
+            displacement: [state.solid_displacement].into(),
+            velocity: [state.solid_velocity].into(),
+            stress: [state.effective_stress].into(),
+            liquid_velocity: [state.liquid_velocity].into(),
             pore_pressure: state.pore_pressure,
         }
     }
@@ -69,42 +71,70 @@ impl From<TwoPhaseState> for Values {
 
 /// Gives particle `p` its values. A displacement that it starts with is only remembered: it stays at its material point, as
 /// small strain has it.
-pub(super) fn set(particles: &mut Particles<f64, 1>, p: usize, values: &Values) {
-    particles.displacement[p][0] = values.displacement;
-    particles.velocity[p][0] = values.velocity;
-    particles.stress[p][(0, 0)] = values.stress;
+pub(super) fn set<const D: usize>(particles: &mut Particles<f64, D>, p: usize, values: &Values<D>) {
+    particles.displacement[p] = values.displacement;
+    particles.velocity[p] = values.velocity;
+    particles.stress[p] = values.stress;
 }
 
 /// The initial state of a body as a function of position.
-pub(super) enum InitialState<'a> {
-    Exact(Source<'a>),
-    Interpolated(Box<dyn Fn(f64) -> Values>),
+pub type InitialState<'a, const D: usize> = Box<dyn Fn(&SVector<f64, D>) -> Result<Values<D>, RunError> + 'a>;
+
+/// That of one dimension.
+pub(super) fn on_one_axis<'a>(
+    scene: &Scene,
+    body: &'a Body,
+    grid: &Grid<f64, 1>,
+) -> Result<InitialState<'a, 1>, RunError> {
+    let source = Source::new(scene, body)?;
+    if body.initialise == Initialise::Exact {
+        return Ok(Box::new(move |x| source.at(x)));
+    }
+    let method = scene.method.method();
+    let field = method.dispatch(AtDofs { grid, source });
+    field.unwrap_or(Err(RunError::NoSuchMethod(method)))
 }
 
-impl<'a> InitialState<'a> {
-    pub(super) fn new(scene: &Scene, body: &'a Body, grid: &Grid<f64, 1>) -> Result<Self, RunError> {
-        let source = Source::new(scene, body)?;
-        if body.initialise == Initialise::Exact {
-            return Ok(Self::Exact(source));
+/// The values that the expressions of `body` have at `x` (m).
+pub(super) fn by_expressions<const D: usize>(
+    body: &Body,
+    x: &SVector<f64, D>,
+) -> Result<Values<D>, RunError> {
+    let point = x.as_slice();
+    let vector = |expressions: &Option<Vec<Expression>>| -> Result<Option<SVector<f64, D>>, RunError> {
+        let Some(expressions) = expressions else {
+            return Ok(None);
+        };
+        let mut value = SVector::<f64, D>::zeros();
+        for (component, expression) in value.iter_mut().zip(expressions) {
+            *component = expression.eval_at(point)?;
         }
-        let method = scene.method.method();
-        let field = method.dispatch(AtDofs { grid, source });
-        field
-            .unwrap_or(Err(RunError::NoSuchMethod(method)))
-            .map(Self::Interpolated)
-    }
-
-    /// The state at `x` (m).
-    pub(super) fn at(&self, x: f64) -> Result<Values, RunError> {
-        match self {
-            Self::Exact(source) => source.at(x),
-            Self::Interpolated(field) => Ok(field(x)),
+        Ok(Some(value))
+    };
+    let velocity = vector(&body.velocity)?.unwrap_or_else(SVector::zeros);
+    let mut stress = SMatrix::<f64, D, D>::zeros();
+    for (place, expression) in body.stress.iter().flat_map(|stress| &stress.components) {
+        let value = expression.eval_at(point)?;
+        for place in [(place[0], place[1]), (place[1], place[0])] {
+            if let Some(component) = stress.get_mut(place) {
+                *component = value;
+            }
         }
     }
+    Ok(Values {
+        displacement: SVector::zeros(),
+        velocity,
+        stress,
+        liquid_velocity: vector(&body.liquid_velocity)?.unwrap_or(velocity),
+        pore_pressure: match &body.pore_pressure {
+            Some(expression) => expression.eval_at(point)?,
+            None => 0.0,
+        },
+    })
 }
 
 /// Where the values come from.
-pub(super) enum Source<'a> {
+enum Source<'a> {
     Expressions(&'a Body),
     Reference(Box<dyn TwoPhaseReference>),
 }
@@ -126,38 +156,22 @@ impl<'a> Source<'a> {
         }
     }
 
-    fn at(&self, x: f64) -> Result<Values, RunError> {
-        let body = match self {
-            Self::Reference(solution) => return Ok(solution.at(x).into()),
-            Self::Expressions(body) => body,
-        };
-        let value = |expression: Option<&Expression>| match expression {
-            Some(expression) => expression.eval_at(&[x]),
-            None => Ok(0.0),
-        };
-        let along = |vector: &'a Option<Vec<Expression>>| vector.as_ref().and_then(|v| v.first());
-        let velocity = value(along(&body.velocity))?;
-        Ok(Values {
-            displacement: 0.0,
-            velocity,
-            stress: value(body.stress.as_ref())?,
-            liquid_velocity: match along(&body.liquid_velocity) {
-                Some(expression) => expression.eval_at(&[x])?,
-                None => velocity,
-            },
-            pore_pressure: value(body.pore_pressure.as_ref())?,
-        })
+    fn at(&self, x: &SVector<f64, 1>) -> Result<Values<1>, RunError> {
+        match self {
+            Self::Reference(solution) => Ok(solution.at(x[0]).into()),
+            Self::Expressions(body) => by_expressions(body, x),
+        }
     }
 }
 
 /// Interpolates once the basis is a type.
-struct AtDofs<'a> {
-    grid: &'a Grid<f64, 1>,
+struct AtDofs<'a, 'g> {
+    grid: &'g Grid<f64, 1>,
     source: Source<'a>,
 }
 
-impl MethodVisitor<f64> for AtDofs<'_> {
-    type Output = Result<Box<dyn Fn(f64) -> Values>, RunError>;
+impl<'a> MethodVisitor<f64> for AtDofs<'a, '_> {
+    type Output = Result<InitialState<'a, 1>, RunError>;
 
     fn visit<B, R>(self, basis: B, _reconstruction: R) -> Self::Output
     where
@@ -165,10 +179,7 @@ impl MethodVisitor<f64> for AtDofs<'_> {
         R: Reconstruction<f64, 1> + Clone + Send + 'static,
     {
         let grid = self.grid.clone();
-        let field =
-            Interpolant::<f64, 5>::new(&basis, &grid, |x| self.source.at(x[0]).map(Values::to_vector))?;
-        Ok(Box::new(move |x| {
-            field.at(&basis, &grid, &SVector::from([x])).into()
-        }))
+        let field = Interpolant::<f64, 5>::new(&basis, &grid, |x| self.source.at(x).map(Values::to_vector))?;
+        Ok(Box::new(move |x| Ok(field.at(&basis, &grid, x).into())))
     }
 }

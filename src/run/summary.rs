@@ -81,9 +81,9 @@ impl From<Conservation<f64>> for ConservationSummary {
 /// Kinetic plus strain energy of a run; ratios to the initial one, absent where that is zero or next to it.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct EnergySummary {
-    /// At the start (J/m2).
+    /// At the start (J; in one dimension J/m2, in two J/m).
     pub initial: f64,
-    /// At the end (J/m2).
+    /// At the end (J; in one dimension J/m2, in two J/m).
     #[serde(rename = "final")]
     pub last: f64,
     /// Highest over initial.
@@ -136,9 +136,9 @@ pub struct Summary {
 
 impl Summary {
     /// Without errors and warnings.
-    pub(super) fn new(
+    pub(super) fn new<const D: usize>(
         scene: &Scene,
-        simulation: &dyn Simulation<1>,
+        simulation: &dyn Simulation<D>,
         schedule: &Schedule,
         march: March,
     ) -> Self {

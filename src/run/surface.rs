@@ -1,78 +1,110 @@
 //! The surfaces of a scene's bodies that the stepper must know.
 
-use std::ops::Range;
+use std::collections::BTreeMap;
 
-use super::initial::first;
+use super::initial::Filling;
 use crate::grid::{Face, Side};
-use crate::particles::Particles;
 use crate::scene::{Body, Boundary, BoundaryKind, Scene};
 use crate::stepper::SurfacePoint;
 
-/// The surfaces of `body`, whose particles are those in `range`: in one phase those that bear a traction; in two every end at
-/// which a load, a pressure outside or the solid's skin acts on the liquid, that is, all but the held and sealed ones.
-pub(super) fn surfaces(
+/// The surfaces of `body`, whose particles are those of `filling` and are numbered from `first` on: in one phase those that bear a
+/// traction; in two every end at which a load, a pressure outside or the solid's skin acts on the liquid, that is, all but
+/// the held and sealed ones. Beyond one dimension each row of the lattice that ends there has a point.
+pub(super) fn surfaces<const D: usize>(
     scene: &Scene,
     body: &Body,
-    particles: &Particles<f64, 1>,
-    range: Range<usize>,
+    filling: &Filling<D>,
+    first: usize,
 ) -> Vec<SurfacePoint<f64>> {
-    let faces = Face::all::<1>().filter(|&face| is_needed(scene, body, face));
-    let points = faces.filter_map(|face| {
-        let particle = outermost(particles, range.clone(), face)?;
-        Some(SurfacePoint {
-            particle,
-            face,
-            area: 1.0,
-            reach: reach(body, particles, particle, face),
-        })
-    });
-    points.collect()
+    let mut points = Vec::new();
+    for face in Face::all::<D>().filter(|&face| is_needed(scene, body, face)) {
+        let area = filling.lattice.volume() / filling.lattice.spacing()[face.axis];
+        for particle in ends(filling, face) {
+            if !touches_another(scene, body, filling, particle, face) {
+                points.push(SurfacePoint {
+                    particle: first + particle,
+                    face,
+                    area,
+                    reach: reach(body, filling, particle, face),
+                });
+            }
+        }
+    }
+    points
 }
 
 fn is_needed(scene: &Scene, body: &Body, face: Face) -> bool {
-    if touches_another(scene, body, face) {
-        return false;
-    }
     let boundary = scene.boundaries.iter().find(|boundary| boundary.face == face);
     if scene.material.phases.count() == 1 {
         return boundary.is_some_and(|b| matches!(b.kind, BoundaryKind::Traction(_)));
     }
     let sealed_wall = |boundary: &Boundary| boundary.is_held() && !boundary.is_open();
+    let same = |a: &[f64], b: &[f64]| a.get(face.axis) == b.get(face.axis);
     let at_face = match face.side {
-        Side::Min => body.min == scene.grid.min,
-        Side::Max => body.max == scene.grid.max,
+        Side::Min => same(&body.min, &scene.grid.min),
+        Side::Max => same(&body.max, &scene.grid.max),
     };
     !(at_face && boundary.is_some_and(sealed_wall))
 }
 
-fn touches_another(scene: &Scene, body: &Body, face: Face) -> bool {
-    scene.bodies.iter().any(|other| match face.side {
-        Side::Min => other.max == body.min,
-        Side::Max => other.min == body.max,
+/// The last particle towards the face of each row of the lattice along its axis, ascending.
+fn ends<const D: usize>(filling: &Filling<D>, face: Face) -> Vec<usize> {
+    let mut last: BTreeMap<[usize; D], (usize, usize)> = BTreeMap::new();
+    for (particle, &k) in filling.kept.iter().enumerate() {
+        let mut row = filling.lattice.place(k);
+        let along = std::mem::take(&mut row[face.axis]);
+        let end = last.entry(row).or_insert((along, particle));
+        let further = match face.side {
+            Side::Min => along < end.0,
+            Side::Max => along > end.0,
+        };
+        if further {
+            *end = (along, particle);
+        }
+    }
+    let mut particles: Vec<_> = last.into_values().map(|(_, particle)| particle).collect();
+    particles.sort_unstable();
+    particles
+}
+
+/// Whether another body begins where this one ends, next to the particle.
+fn touches_another<const D: usize>(
+    scene: &Scene,
+    body: &Body,
+    filling: &Filling<D>,
+    particle: usize,
+    face: Face,
+) -> bool {
+    let x = &filling.particles.position[particle];
+    let meets = |a: &[f64], b: &[f64]| a.get(face.axis) == b.get(face.axis);
+    let beside = |other: &Body| {
+        let mut bounds = other.min.iter().zip(&other.max).zip(x.iter()).enumerate();
+        bounds.all(|(axis, ((low, high), x))| axis == face.axis || (low <= x && x <= high))
+    };
+    scene.bodies.iter().any(|other| {
+        let meets = match face.side {
+            Side::Min => meets(&other.max, &body.min),
+            Side::Max => meets(&other.min, &body.max),
+        };
+        meets && beside(other)
     })
 }
 
 /// Distance of the body's end from the particle, in lengths of the particle.
-fn reach(body: &Body, particles: &Particles<f64, 1>, particle: usize, face: Face) -> f64 {
-    if body.jitter == 0.0 {
+fn reach<const D: usize>(body: &Body, filling: &Filling<D>, particle: usize, face: Face) -> f64 {
+    // Where an expression says where the body is, its end is half a particle beyond the last one.
+    if body.jitter == 0.0 || body.inside.is_some() {
         return 0.5;
     }
-    let (x, volume) = (particles.position[particle][0], particles.volume[particle]);
+    let axis = face.axis;
+    let x = filling.particles.position[particle][axis];
+    let end = |corner: &[f64]| corner.get(axis).copied().unwrap_or(f64::NAN);
     let distance = match face.side {
-        Side::Min => x - first(&body.min),
-        Side::Max => first(&body.max) - x,
+        Side::Min => x - end(&body.min),
+        Side::Max => end(&body.max) - x,
     };
     // Round-off must not put the surface inside the particle.
-    (distance / volume).max(0.0)
-}
-
-fn outermost(particles: &Particles<f64, 1>, range: Range<usize>, face: Face) -> Option<usize> {
-    let position = |p: &usize| particles.position[*p][0];
-    let by_position = |a: &usize, b: &usize| position(a).total_cmp(&position(b));
-    match face.side {
-        Side::Min => range.min_by(by_position),
-        Side::Max => range.max_by(by_position),
-    }
+    (distance / filling.lattice.spacing()[axis]).max(0.0)
 }
 
 #[cfg(test)]
@@ -114,7 +146,7 @@ mod tests {
         let overrides: Vec<_> = overrides.iter().map(ToString::to_string).collect();
         let scene = Scene::from_toml(SCENE, &overrides).unwrap();
         let grid = Grid::new(vector![0.0], vector![2.0], [8]).unwrap();
-        initial(&scene, &grid).unwrap().surface
+        initial(&scene, &grid, 0.0).unwrap().surface
     }
 
     fn ends(overrides: &[&str]) -> Vec<(String, usize)> {

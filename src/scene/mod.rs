@@ -26,7 +26,7 @@ pub use error::SceneError;
 pub use expression::{Expression, ExpressionError, ExpressionProblem};
 pub use spec::{
     Against, Body, Boundary, BoundaryKind, GridSpec, Initialise, Law, Material, Method, OutputSpec,
-    ParticleOutput, Phases, PoreBoundary, ReferenceSpec, ScalarKind, StepSize, TimeSpec,
+    ParticleOutput, Phases, PoreBoundary, ReferenceSpec, ScalarKind, StepSize, StressSpec, TimeSpec,
 };
 
 use std::path::Path;
@@ -114,11 +114,16 @@ impl Scene {
         scene
     }
 
-    /// The same scene with this many cells along every axis, at least 1. The rest of the scene, the number of
-    /// particles per cell among it, stays; it is not checked again.
+    /// The same scene with this many cells along the first axis, at least 1, and as many along the others as keep the shape of
+    /// the cells. The rest of the scene, the number of particles per cell among it, stays; it is not checked again.
     #[must_use]
     pub fn with_cells(mut self, cells: usize) -> Self {
-        self.grid.cells.fill(cells.max(1));
+        let cells = cells.max(1);
+        let first = self.grid.cells.first().copied().unwrap_or(1).max(1);
+        for along in &mut self.grid.cells {
+            let scaled = *along as f64 * cells as f64 / first as f64;
+            *along = (scaled.round() as usize).max(1);
+        }
         self
     }
 

@@ -91,16 +91,22 @@ pub enum Law {
     LinearElastic {
         /// Young's modulus (Pa), positive.
         youngs_modulus: f64,
+        /// Poisson's ratio, 0 in one dimension, which feels the modulus of uniaxial strain alone.
+        poissons_ratio: f64,
     },
-    /// `linear-elastic` with `strain = "large"`: Hill's rate, in 1-D `(E - stress)` times strain rate.
+    /// `linear-elastic` with `strain = "large"`: Hill's rate, in one dimension `(E - stress)` times strain rate.
     Hill {
         /// Young's modulus (Pa), positive.
         youngs_modulus: f64,
+        /// Poisson's ratio, 0 in one dimension, which feels the modulus of uniaxial strain alone.
+        poissons_ratio: f64,
     },
     /// `neo-hookean`, large strain.
     NeoHookean {
         /// Young's modulus of the undeformed material (Pa), positive.
         youngs_modulus: f64,
+        /// Poisson's ratio, 0 in one dimension, which feels the modulus of uniaxial strain alone.
+        poissons_ratio: f64,
     },
     /// `logarithmic`, large strain: stress `E ln J`.
     Logarithmic {
@@ -127,9 +133,9 @@ impl Law {
     /// Young's modulus (Pa).
     pub fn youngs_modulus(self) -> f64 {
         match self {
-            Self::LinearElastic { youngs_modulus }
-            | Self::Hill { youngs_modulus }
-            | Self::NeoHookean { youngs_modulus }
+            Self::LinearElastic { youngs_modulus, .. }
+            | Self::Hill { youngs_modulus, .. }
+            | Self::NeoHookean { youngs_modulus, .. }
             | Self::Logarithmic { youngs_modulus } => youngs_modulus,
         }
     }
@@ -186,6 +192,13 @@ pub enum Initialise {
     Dofs,
 }
 
+/// A symmetric stress by its components (Pa), expressions in `x`, `y`, `z`; one that is not given is zero.
+#[derive(Clone, Debug, Default)]
+pub struct StressSpec {
+    /// Rows and columns with their expression, each pair once, the row not above the column.
+    pub components: Vec<([usize; 2], Expression)>,
+}
+
 /// A box filled with particles.
 #[derive(Clone, Debug)]
 pub struct Body {
@@ -197,9 +210,11 @@ pub struct Body {
     pub particles_per_cell: Vec<usize>,
     /// Velocity at the start (m/s), in `x`, `y`, `z`; one expression per axis. Without it the body is at rest.
     pub velocity: Option<Vec<Expression>>,
+    /// Where the body is, within its box: particles at which this is positive are kept, in `x`, `y`, `z`. Without it all are.
+    pub inside: Option<Expression>,
     /// Stress at the start (Pa), tension positive, in `x`, `y`, `z`; with two phases the effective one. Without it the body
     /// is free of stress.
-    pub stress: Option<Expression>,
+    pub stress: Option<StressSpec>,
     /// Velocity of the liquid at the start (m/s), as `velocity`. Without it the liquid moves with the solid.
     pub liquid_velocity: Option<Vec<Expression>>,
     /// Pore pressure at the start (Pa), tension positive, in `x`, `y`, `z`. Without it there is none.
@@ -220,6 +235,10 @@ pub enum BoundaryKind {
     Free,
     /// The grid's face does not move.
     Fixed,
+    /// The material slides along the grid's face without friction and stays at it.
+    Roller,
+    /// A wall at the grid's face that nothing passes and that lets go, with this coefficient of friction, not negative.
+    Frictional(f64),
     /// The grid's face moves with this velocity (m/s), in `t`; one expression per axis.
     Velocity(Vec<Expression>),
     /// The bodies' surface that looks towards the face bears this force per area (Pa), in `t`; one expression
@@ -252,7 +271,10 @@ pub struct Boundary {
 impl Boundary {
     /// Whether the grid's face is held: fixed or told a velocity.
     pub fn is_held(&self) -> bool {
-        matches!(self.kind, BoundaryKind::Fixed | BoundaryKind::Velocity(_))
+        matches!(
+            self.kind,
+            BoundaryKind::Fixed | BoundaryKind::Roller | BoundaryKind::Velocity(_)
+        )
     }
 
     /// Whether liquid passes.
@@ -311,6 +333,12 @@ pub enum ReferenceSpec {
     },
     /// `self-weight`, two phases: a column on a fixed base, at rest under its weight.
     SelfWeight,
+    /// `manufactured`, two and three dimensions: a neo-Hookean box on rollers, driven by the body force that makes waves of this
+    /// amplitude exact. The initial state of the body is the reference's.
+    Manufactured {
+        /// Largest displacement (m), not 0.
+        amplitude: f64,
+    },
 }
 
 impl ReferenceSpec {
@@ -323,13 +351,14 @@ impl ReferenceSpec {
             Self::XieLeo { .. } => "xie-leo",
             Self::StandingWave { .. } => "standing-wave",
             Self::SelfWeight => "self-weight",
+            Self::Manufactured { .. } => "manufactured",
         }
     }
 
     /// How many phases it is about.
     pub fn phases(&self) -> usize {
         match self {
-            Self::VibratingBar { .. } | Self::ColumnCompaction { .. } => 1,
+            Self::VibratingBar { .. } | Self::ColumnCompaction { .. } | Self::Manufactured { .. } => 1,
             Self::Consolidation { .. }
             | Self::XieLeo { .. }
             | Self::StandingWave { .. }
@@ -341,8 +370,19 @@ impl ReferenceSpec {
     pub fn gives_initial_state(&self) -> bool {
         matches!(
             self,
-            Self::Consolidation { .. } | Self::XieLeo { .. } | Self::StandingWave { .. }
+            Self::Consolidation { .. }
+                | Self::XieLeo { .. }
+                | Self::StandingWave { .. }
+                | Self::Manufactured { .. }
         )
+    }
+
+    /// Whether it is one of so many axes.
+    pub fn knows_dimension(&self, axes: usize) -> bool {
+        match self {
+            Self::Manufactured { .. } => axes > 1,
+            _ => axes == 1,
+        }
     }
 
     /// Time (s) of the reference at which the run starts.

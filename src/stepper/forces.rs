@@ -36,6 +36,9 @@ where
             self.integrate_stress();
         }
         self.add_tractions(forcing);
+        if !self.body_forces.is_empty() {
+            self.add_body_forces();
+        }
     }
 
     /// Both in one pass, where the particles are the points of both.

@@ -20,6 +20,12 @@ pub enum FaceCondition<T, const D: usize> {
         /// Acceleration (m/s2) at the step's start.
         acceleration: SVector<T, D>,
     },
+    /// A wall at the grid's face that nothing passes, that does not hold what moves away from it, and along which material slides
+    /// with Coulomb's friction. For the solid of one phase.
+    Frictional {
+        /// Coefficient of friction, not negative; 0 is a smooth wall.
+        coefficient: T,
+    },
     /// Force per area (Pa) on the bodies' surface that looks towards the face ([`SurfacePoint`]).
     Traction(SVector<T, D>),
 }

@@ -15,7 +15,9 @@
 
 mod acceleration;
 mod advance;
+mod body_forces;
 mod cell_sums;
+mod contact;
 mod critical;
 mod diagnostics;
 mod forces;
@@ -105,6 +107,8 @@ where
     crossed: Vec<T>,
     /// DOFs that one particle sees, with their values; a place to note them while their matrix is summed.
     seen: Vec<(usize, T)>,
+    /// Force per mass of each particle; empty where there is none but the uniform one.
+    body_forces: Vec<SVector<T, D>>,
     /// DOFs of each face, in the order of [`Face::all`].
     face_dofs: Vec<Vec<u32>>,
     velocity_mass: VelocityMass,
@@ -235,6 +239,7 @@ where
             spans,
             crossed: Vec::with_capacity(crossed_count),
             seen: Vec::with_capacity(MOST_SEEN),
+            body_forces: Vec::new(),
             face_dofs,
             velocity_mass,
             time: T::zero(),
@@ -281,6 +286,7 @@ where
         } else {
             self.assemble(forcing);
             self.accelerate(forcing);
+            self.stop_at_walls(dt, forcing);
             self.update_velocities(dt, forcing);
         }
         self.steps += 1;
@@ -439,6 +445,7 @@ where
             + self.liquid.bytes()
             + self.spans.bytes()
             + size_of::<T>() * self.crossed.capacity()
+            + size_of::<SVector<T, D>>() * self.body_forces.capacity()
             + both * self.drag.len()
     }
 

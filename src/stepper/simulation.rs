@@ -22,6 +22,9 @@ pub trait Simulation<const D: usize> {
     /// As there.
     fn step(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError>;
 
+    /// See [`Stepper::set_body_forces`].
+    fn set_body_forces(&mut self, force: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>);
+
     /// A copy of the particles, without the law's and the second phase's data.
     fn particles(&self) -> Particles<f64, D>;
 
@@ -63,6 +66,10 @@ where
 {
     fn step(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError> {
         self.step(T::lit(dt), &cast_forcing(forcing))
+    }
+
+    fn set_body_forces(&mut self, force: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>) {
+        self.set_body_forces(|x| force(&x.map(T::primal)).map(T::lit));
     }
 
     fn particles(&self) -> Particles<f64, D> {
@@ -157,6 +164,9 @@ fn cast_forcing<T: Scalar, const D: usize>(forcing: &Forcing<f64, D>) -> Forcing
     for face in Face::all::<D>() {
         let condition = match forcing.face(face) {
             FaceCondition::Free => FaceCondition::Free,
+            FaceCondition::Frictional { coefficient } => FaceCondition::Frictional {
+                coefficient: T::lit(*coefficient),
+            },
             FaceCondition::Traction(traction) => FaceCondition::Traction(cast(traction)),
             FaceCondition::Held {
                 held,

@@ -12,7 +12,9 @@ use serde::Serialize;
 
 use crate::method::Method;
 use crate::output::OutputError;
-use crate::run::{ConservationSummary, ErrorNorms, Outcome, RunError, Summary, run};
+use crate::run::{
+    ConservationSummary, ErrorNorms, InSpace, Outcome, RunError, Summary, in_dimension, run, run_in,
+};
 use crate::scene::Scene;
 use timing::{Timing, median};
 
@@ -41,7 +43,7 @@ pub struct Row {
     pub reconstruction: &'static str,
     /// Sub-points of each particle; 1 is the particle itself.
     pub subpoints: u8,
-    /// Number of cells.
+    /// Number of cells along the first axis.
     pub cells: usize,
     /// Number of particles.
     pub particles: usize,
@@ -130,6 +132,7 @@ pub struct Study {
     /// All rows.
     pub rows: Vec<Row>,
     /// Runs to draw fields of: each method at the number of cells nearest to the scene's.
+    /// None beyond one dimension.
     pub drawn: Vec<(Method, Outcome)>,
 }
 
@@ -175,7 +178,7 @@ pub fn study(
         return Err(StudyError::NothingToDo);
     }
     let total = plan.methods.len() * plan.cells.len();
-    let drawn_cells = nearest(&plan.cells, scene.grid.cells.iter().product());
+    let drawn_cells = nearest(&plan.cells, scene.grid.cells.first().copied().unwrap_or(1));
     let (mut rows, mut drawn) = (Vec::with_capacity(total), Vec::new());
     let mut timings = Vec::with_capacity(total);
     for &method in &plan.methods {
@@ -212,7 +215,10 @@ fn nearest(cells: &[usize], wanted: usize) -> usize {
 /// The first run of a method at a resolution: what it found, and how long it took.
 fn one(scene: &Scene, method: Method, cells: usize) -> Result<(Row, Timing, Option<Outcome>), StudyError> {
     let scene = scene.with_method(method).with_cells(cells);
-    let found = run(&scene, None, &mut |_| {});
+    let found = match scene.dimension() {
+        1 => run(&scene, None, &mut |_| {}).map(|outcome| (outcome.summary.clone(), Some(outcome))),
+        _ => in_dimension!(scene, figures(&scene)).map(|summary| (summary, None)),
+    };
     let mut row = Row::new(method, cells);
     let mut timing = Timing {
         method,
@@ -221,10 +227,10 @@ fn one(scene: &Scene, method: Method, cells: usize) -> Result<(Row, Timing, Opti
         times: Vec::new(),
     };
     match found {
-        Ok(outcome) => {
-            row.take(&outcome.summary);
-            timing.times.push(outcome.summary.wall_seconds);
-            Ok((row, timing, Some(outcome)))
+        Ok((summary, outcome)) => {
+            row.take(&summary);
+            timing.times.push(summary.wall_seconds);
+            Ok((row, timing, outcome))
         }
         Err(stopped @ (RunError::Stopped { .. } | RunError::NoEnergy { .. })) => {
             row.stopped = Some(stopped.to_string());
@@ -236,6 +242,13 @@ fn one(scene: &Scene, method: Method, cells: usize) -> Result<(Row, Timing, Opti
             source,
         }),
     }
+}
+
+fn figures<const D: usize>(scene: &Scene) -> Result<Summary, RunError>
+where
+    Scene: InSpace<D>,
+{
+    run_in::<D>(scene, None, &mut |_| {}).map(|outcome| outcome.summary)
 }
 
 /// Order of each field between neighbouring rows of one method.

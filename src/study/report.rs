@@ -70,7 +70,7 @@ pub fn picture(study: &Study, title: &str) -> String {
     )
 }
 
-/// Writes `study.csv`, `study.svg` and `fields.svg`.
+/// Writes `study.csv`, `study.svg` and, where there are runs to draw, `fields.svg`.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -91,11 +91,14 @@ pub fn write_files(study: &Study, title: &str, folder: &Folder) -> Result<Vec<Pa
         &panels,
         columns,
     );
-    Ok(vec![
+    let mut files = vec![
         records(&study.rows, words).write_csv(folder, "study.csv")?,
         folder.write("study.svg", &picture(study, title))?,
-        folder.write("fields.svg", &fields)?,
-    ])
+    ];
+    if !panels.is_empty() {
+        files.push(folder.write("fields.svg", &fields)?);
+    }
+    Ok(files)
 }
 
 /// Writes `fields.svg`: every field of one run over position, against its reference.

@@ -26,10 +26,10 @@ pub(super) fn solution(scene: &Scene, reference: ReferenceSpec, origin: f64, hei
                 soil,
             };
             Some(match scene.material.law {
-                Law::LinearElastic { youngs_modulus } => layer.small(youngs_modulus)?,
-                Law::Hill { youngs_modulus } => layer.large(Hill { youngs_modulus })?,
-                Law::NeoHookean { youngs_modulus } => layer.large(neo_hookean(youngs_modulus))?,
-                Law::Logarithmic { youngs_modulus } => layer.large(Logarithmic { youngs_modulus })?,
+                Law::LinearElastic { youngs_modulus, .. } => layer.small(youngs_modulus)?,
+                Law::Hill { youngs_modulus, .. } => layer.large(Hill { youngs_modulus })?,
+                Law::NeoHookean { youngs_modulus, .. } => layer.large(neo_hookean(youngs_modulus))?,
+                Law::Logarithmic { youngs_modulus, .. } => layer.large(Logarithmic { youngs_modulus })?,
             })
         }
         ReferenceSpec::XieLeo { load } => {
@@ -44,7 +44,9 @@ pub(super) fn solution(scene: &Scene, reference: ReferenceSpec, origin: f64, hei
             let column = SaturatedColumn::new(height, modulus, 0.0, soil)?;
             Some(Box::new(column.with_origin(origin)?))
         }
-        ReferenceSpec::VibratingBar { .. } | ReferenceSpec::ColumnCompaction { .. } => None,
+        ReferenceSpec::VibratingBar { .. }
+        | ReferenceSpec::ColumnCompaction { .. }
+        | ReferenceSpec::Manufactured { .. } => None,
     })
 }
 

@@ -11,7 +11,7 @@ use parser::{Operation, compile};
 use super::text::{quote, shorten};
 
 /// Names of the coordinates.
-const COORDINATES: [&str; 3] = ["x", "y", "z"];
+pub(super) const COORDINATES: [&str; 3] = ["x", "y", "z"];
 
 /// A formula read once and evaluated often.
 ///

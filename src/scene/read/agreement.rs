@@ -1,6 +1,7 @@
 //! Whether the scene is the problem that its reference solves: errors against the solution of another problem
 //! would mean nothing.
 
+mod space;
 mod two_phase;
 
 use std::f64::consts::PI;
@@ -22,6 +23,7 @@ const TOP: Face = Face {
 };
 
 pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
+    check_dimension(scene)?;
     check_phases(scene)?;
     match scene.reference {
         None => Ok(()),
@@ -37,6 +39,22 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
             two_phase::standing_wave(scene, velocity, mode)
         }
         Some(ReferenceSpec::SelfWeight) => two_phase::self_weight(scene),
+        Some(ReferenceSpec::Manufactured { amplitude }) => space::manufactured(scene, amplitude),
+    }
+}
+
+fn check_dimension(scene: &Scene) -> Result<(), SceneError> {
+    let found = scene.dimension();
+    match scene.reference {
+        Some(reference) if !reference.knows_dimension(found) => Err(refuse(
+            "grid.cells",
+            &format!("{:?}", scene.grid.cells),
+            &format!(
+                "reference.{} is a solution in another number of dimensions",
+                reference.name()
+            ),
+        )),
+        _ => Ok(()),
     }
 }
 
@@ -129,8 +147,8 @@ fn column(scene: &Scene, body_force: f64, ramp: f64, against: Against) -> Result
 
 fn static_column(scene: &Scene, body: &Body, body_force: f64) -> Result<(), String> {
     let (strain, youngs_modulus) = match scene.material.law {
-        Law::LinearElastic { youngs_modulus } => (Strain::Small, youngs_modulus),
-        Law::Hill { youngs_modulus } => (Strain::Large, youngs_modulus),
+        Law::LinearElastic { youngs_modulus, .. } => (Strain::Small, youngs_modulus),
+        Law::Hill { youngs_modulus, .. } => (Strain::Large, youngs_modulus),
         Law::NeoHookean { .. } | Law::Logarithmic { .. } => {
             return Err(
                 "against = \"static\" knows linear-elastic only; expected against = \"dynamic\"".into(),

@@ -3,12 +3,13 @@
 use super::grid::{is_blurred, precision_hint};
 use super::material::PhaseCount;
 use super::{Item, MOST, Section};
-use crate::scene::expression::coordinates;
-use crate::scene::{Body, Expression, GridSpec, Initialise, Law, ScalarKind, SceneError};
+use crate::scene::expression::{COORDINATES, coordinates};
+use crate::scene::{Body, Expression, GridSpec, Initialise, Law, ScalarKind, SceneError, StressSpec};
 
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 11] = [
     "min",
     "max",
+    "inside",
     "particles_per_cell",
     "velocity",
     "stress",
@@ -78,7 +79,8 @@ fn one(section: &Section<'_>, grid: &GridSpec) -> Result<Body, SceneError> {
     let body = Body {
         particles_per_cell: per_cell.per_axis(dimension, "whole numbers", |n| n.size(1, MOST))?,
         velocity: vector(section, "velocity", dimension)?,
-        stress: number(section, "stress", dimension)?,
+        inside: number(section, "inside", dimension)?,
+        stress: stress(section, dimension)?,
         liquid_velocity: vector(section, "liquid_velocity", dimension)?,
         pore_pressure: number(section, "pore_pressure", dimension)?,
         initialise: match section.optional("initialise") {
@@ -122,6 +124,38 @@ fn number(section: &Section<'_>, name: &str, dimension: usize) -> Result<Option<
         .transpose()
 }
 
+/// In one dimension an expression, beyond it a table with one for each component.
+fn stress(section: &Section<'_>, dimension: usize) -> Result<Option<StressSpec>, SceneError> {
+    let Some(item) = section.optional("stress") else {
+        return Ok(None);
+    };
+    let variables = coordinates(dimension);
+    if dimension == 1 {
+        let components = vec![([0, 0], item.expression(variables)?)];
+        return Ok(Some(StressSpec { components }));
+    }
+    let table = item.section("a table of components (Pa), such as { xx = \"-1e4\", yy = \"-2e4\" }")?;
+    let entries: Vec<_> = (0..dimension)
+        .flat_map(|row| (0..=row).map(move |column| [row, column]))
+        .map(|place| (component_name(place), place))
+        .collect();
+    let names: Vec<_> = entries.iter().map(|(name, _)| name.as_str()).collect();
+    let table = table.allow(&names, &[])?;
+    let mut stress = StressSpec::default();
+    for (name, place) in &entries {
+        if let Some(item) = table.optional(name) {
+            stress.components.push((*place, item.expression(variables)?));
+        }
+    }
+    Ok(Some(stress))
+}
+
+/// `xx`, `xy`, ... : the lesser axis first.
+fn component_name([row, column]: [usize; 2]) -> String {
+    let axis = |a: usize| COORDINATES.get(a).copied().unwrap_or("?");
+    format!("{}{}", axis(column), axis(row))
+}
+
 fn corners(section: &Section<'_>, grid: &GridSpec) -> Result<(Vec<f64>, Vec<f64>), SceneError> {
     let min_item = section.required("min", "the lower corner (m), a list of numbers")?;
     let max_item = section.required("max", "the upper corner (m), a list of numbers")?;
@@ -154,7 +188,9 @@ fn check_values(body: &Body) -> Result<(), SceneError> {
         let corners = body.min.iter().zip(&body.max);
         let point: Vec<f64> = corners.map(|(min, max)| min + part * (max - min)).collect();
         let vectors = body.velocity.iter().chain(&body.liquid_velocity).flatten();
-        for expression in vectors.chain(&body.stress).chain(&body.pore_pressure) {
+        let stresses = body.stress.iter().flat_map(|stress| &stress.components);
+        let stresses = stresses.map(|(_, expression)| expression);
+        for expression in vectors.chain(stresses).chain(&body.pore_pressure) {
             expression.eval_at(&point)?;
         }
     }

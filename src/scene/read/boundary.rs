@@ -6,15 +6,17 @@ use crate::grid::{Face, Side};
 use crate::scene::text::one_of;
 use crate::scene::{Boundary, BoundaryKind, Expression, GridSpec, PoreBoundary, SceneError};
 
-const KEYS: [&str; 6] = [
+const KEYS: [&str; 8] = [
     "face",
     "fixed",
+    "roller",
+    "friction",
     "velocity",
     "traction",
     "drained",
     "pore_pressure",
 ];
-const KINDS: [&str; 3] = ["fixed", "velocity", "traction"];
+const KINDS: [&str; 5] = ["fixed", "roller", "friction", "velocity", "traction"];
 const TWO_PHASE_KEYS: [&str; 2] = ["drained", "pore_pressure"];
 
 pub(super) fn read(
@@ -76,12 +78,24 @@ fn kind(
             PhaseCount::One => "",
             PhaseCount::Two => ", with or without drained or pore_pressure, or one of these alone",
         };
-        let problem = format!("expected exactly one of fixed, velocity, traction{beside}; found {found}");
+        let problem = format!(
+            "expected exactly one of {}{beside}; found {found}",
+            KINDS.join(", ")
+        );
         return Err(entry.conflict(&problem));
     };
     let item = section.required(kind, "a value")?;
     match *kind {
-        "fixed" => fixed(&item),
+        "fixed" => holds(&item, BoundaryKind::Fixed),
+        "roller" => holds(&item, BoundaryKind::Roller),
+        "friction" if phases == PhaseCount::Two => {
+            Err(item.conflict("it knows one phase only so far; expected fixed, velocity or traction"))
+        }
+        "friction" => {
+            let expected = "a coefficient of friction, 0 or more";
+            let coefficient = item.number_where(expected, |coefficient| coefficient >= 0.0)?;
+            Ok(BoundaryKind::Frictional(coefficient))
+        }
         "velocity" => Ok(BoundaryKind::Velocity(in_time(&item, dimension, end)?)),
         _ => Ok(BoundaryKind::Traction(in_time(&item, dimension, end)?)),
     }
@@ -107,10 +121,11 @@ fn pores(section: &Section<'_>, end: f64) -> Result<PoreBoundary, SceneError> {
     }
 }
 
-fn fixed(item: &Item<'_>) -> Result<BoundaryKind, SceneError> {
+/// A kind that is there or not.
+fn holds(item: &Item<'_>, kind: BoundaryKind) -> Result<BoundaryKind, SceneError> {
     let expected = "true; a face that no [[boundary]] names is free";
     match item.flag(expected)? {
-        true => Ok(BoundaryKind::Fixed),
+        true => Ok(kind),
         false => Err(item.not_allowed(expected)),
     }
 }

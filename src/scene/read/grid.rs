@@ -23,20 +23,13 @@ pub(super) fn read(root: &Section<'_>) -> Result<GridSpec, SceneError> {
             |high| high > low && (high - low).is_finite(),
         )?;
     }
-    let cells = section.required("cells", "cells along each axis, a list of whole numbers")?;
-    let cells = cells.per_axis(dimension, "whole numbers", |n| n.size(1, MOST))?;
-    Ok(GridSpec { min, max, cells })
-}
-
-/// This version steps in one dimension.
-pub(super) fn check_one_axis(root: &Section<'_>, grid: &GridSpec) -> Result<(), SceneError> {
-    if grid.cells.len() == 1 {
-        return Ok(());
+    let cells_item = section.required("cells", "cells along each axis, a list of whole numbers")?;
+    let cells = cells_item.per_axis(dimension, "whole numbers", |n| n.size(1, MOST))?;
+    let total = cells.iter().fold(1.0, |total, &n| total * n as f64);
+    if total > MOST as f64 {
+        return Err(cells_item.conflict(&format!("that makes {total:e} cells; expected at most {MOST}")));
     }
-    let cells = root
-        .section("grid")?
-        .required("cells", "a list of whole numbers")?;
-    Err(cells.not_in_this_version("one number, a grid in one dimension"))
+    Ok(GridSpec { min, max, cells })
 }
 
 /// Refuses cells that the scalar type cannot tell apart.

@@ -73,7 +73,13 @@ pub(super) fn phases(root: &Section<'_>) -> Result<PhaseCount, SceneError> {
 }
 
 /// `gravity` (m/s2) is that of the liquid's unit weight.
-pub(super) fn read(section: Section<'_>, phases: PhaseCount, gravity: f64) -> Result<Material, SceneError> {
+/// `dimension` is the number of the grid's axes.
+pub(super) fn read(
+    section: Section<'_>,
+    dimension: usize,
+    phases: PhaseCount,
+    gravity: f64,
+) -> Result<Material, SceneError> {
     let keys = [&KEYS[..], &TWO_PHASE_KEYS].concat();
     let known = match phases {
         // A key of two phases is known, and refused as such below.
@@ -84,15 +90,25 @@ pub(super) fn read(section: Section<'_>, phases: PhaseCount, gravity: f64) -> Re
     phases.check(&section, &TWO_PHASE_KEYS)?;
     let strain_item = section.required("strain", "\"small\" or \"large\"")?;
     let strain = strain_item.choice(&[("small", Strain::Small), ("large", Strain::Large)], &[])?;
-    let (name, youngs_modulus) = law(&section.required("law", LAW)?)?;
+    let law_item = section.required("law", LAW)?;
+    let (name, youngs_modulus, poissons_ratio) = law(&law_item, dimension)?;
     let phases = match phases {
         PhaseCount::One => one_phase(&section)?,
         PhaseCount::Two => two_phases(&section, gravity)?,
     };
     let law = match (name, strain) {
-        (LawName::LinearElastic, Strain::Small) => Law::LinearElastic { youngs_modulus },
-        (LawName::LinearElastic, Strain::Large) => Law::Hill { youngs_modulus },
-        (LawName::NeoHookean, Strain::Large) => Law::NeoHookean { youngs_modulus },
+        (LawName::LinearElastic, Strain::Small) => Law::LinearElastic {
+            youngs_modulus,
+            poissons_ratio,
+        },
+        (LawName::LinearElastic, Strain::Large) => Law::Hill {
+            youngs_modulus,
+            poissons_ratio,
+        },
+        (LawName::NeoHookean, Strain::Large) => Law::NeoHookean {
+            youngs_modulus,
+            poissons_ratio,
+        },
         (LawName::Logarithmic, Strain::Large) => Law::Logarithmic { youngs_modulus },
         (LawName::NeoHookean, Strain::Small) => {
             return Err(strain_item.conflict("the law neo-hookean is of large strain; expected \"large\""));
@@ -144,8 +160,8 @@ fn two_phases(section: &Section<'_>, gravity: f64) -> Result<Phases, SceneError>
     }))
 }
 
-/// The one law in the table, and its Young's modulus (Pa).
-fn law(item: &Item<'_>) -> Result<(LawName, f64), SceneError> {
+/// The one law in the table, its Young's modulus (Pa) and, beyond one dimension, Poisson's ratio.
+fn law(item: &Item<'_>, dimension: usize) -> Result<(LawName, f64, f64), SceneError> {
     let section = item.section(LAW)?;
     let names = LAWS.map(|law| law.0);
     let section = section.allow(&names, &[])?;
@@ -159,10 +175,30 @@ fn law(item: &Item<'_>) -> Result<(LawName, f64), SceneError> {
     for (name, law) in LAWS {
         if let Some(constants) = section.optional(name) {
             let constants = constants.section("a table, such as { youngs_modulus = 4e4 }")?;
-            let constants = constants.allow(&["youngs_modulus"], &["poissons_ratio"])?;
+            let constants = constants.allow(&["youngs_modulus", "poissons_ratio"], &[])?;
             let modulus = constants.required("youngs_modulus", "a positive number (Pa)")?;
-            return Ok((law, modulus.positive("Pa")?));
+            return Ok((
+                law,
+                modulus.positive("Pa")?,
+                poissons_ratio(&constants, dimension)?,
+            ));
         }
     }
     Err(section.missing(LAW))
+}
+
+/// One dimension feels the modulus of uniaxial strain alone, which scenes there call Young's.
+fn poissons_ratio(constants: &Section<'_>, dimension: usize) -> Result<f64, SceneError> {
+    let expected = "a number above -1 and below 0.5";
+    if dimension > 1 {
+        return constants
+            .required("poissons_ratio", expected)?
+            .number_where(expected, |ratio| ratio > -1.0 && ratio < 0.5);
+    }
+    match constants.optional("poissons_ratio") {
+        None => Ok(0.0),
+        Some(item) => Err(item.conflict(
+            "one dimension knows uniaxial strain only, and youngs_modulus is its modulus; leave it out",
+        )),
+    }
 }

@@ -1,6 +1,7 @@
 //! From a TOML table to a checked scene.
 
 mod agreement;
+mod beyond_one_axis;
 mod body;
 mod boundary;
 mod grid;
@@ -43,13 +44,12 @@ pub(super) fn scene(table: &Table) -> Result<Scene, SceneError> {
     let grid = grid::read(&root)?;
     let phases = material::phases(&root)?;
     let method = method::read(root.section("method")?, grid.cells.len(), phases)?;
-    grid::check_one_axis(&root, &grid)?;
     grid::check_cell_size(&root, &grid, method.scalar)?;
     let time = time::read(root.section("time")?)?;
     let load = load::read(&root, &grid, time.end, phases)?;
     let scene = Scene {
         title,
-        material: material::read(root.section("material")?, phases, load.gravity)?,
+        material: material::read(root.section("material")?, grid.cells.len(), phases, load.gravity)?,
         bodies: body::read(&root, &grid, method.scalar, phases)?,
         boundaries: boundary::read(&root, &grid, time.end, phases)?,
         body_force: load.body_force,
@@ -60,6 +60,7 @@ pub(super) fn scene(table: &Table) -> Result<Scene, SceneError> {
         method,
     };
     body::check_stress(&root, scene.material.law)?;
+    beyond_one_axis::check(&root, &scene)?;
     agreement::check(&scene)?;
     Ok(scene)
 }

@@ -5,13 +5,14 @@ use crate::scene::{Against, ReferenceSpec, SceneError};
 
 type Read = fn(&Item<'_>) -> Result<ReferenceSpec, SceneError>;
 
-const REFERENCES: [(&str, Read); 6] = [
+const REFERENCES: [(&str, Read); 7] = [
     ("vibrating-bar", vibrating_bar),
     ("column-compaction", column_compaction),
     ("consolidation", consolidation),
     ("xie-leo", xie_leo),
     ("standing-wave", standing_wave),
     ("self-weight", self_weight),
+    ("manufactured", manufactured),
 ];
 
 /// Most half waves of a standing wave.
@@ -98,6 +99,14 @@ fn standing_wave(item: &Item<'_>) -> Result<ReferenceSpec, SceneError> {
 fn self_weight(item: &Item<'_>) -> Result<ReferenceSpec, SceneError> {
     item.section("an empty table, {}")?.allow_none()?;
     Ok(ReferenceSpec::SelfWeight)
+}
+
+fn manufactured(item: &Item<'_>) -> Result<ReferenceSpec, SceneError> {
+    let section = item.section("a table, such as { amplitude = 0.05 }")?;
+    let section = section.allow(&["amplitude"], &[])?;
+    Ok(ReferenceSpec::Manufactured {
+        amplitude: not_zero(&section, "amplitude", "a number other than 0 (m)")?,
+    })
 }
 
 /// Relative errors need something to be relative to.

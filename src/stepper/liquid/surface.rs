@@ -44,7 +44,9 @@ fn is_held<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePo
 fn traction<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> SVector<T, D> {
     match forcing.face(point.face) {
         FaceCondition::Traction(traction) => *traction,
-        FaceCondition::Free | FaceCondition::Held { .. } => SVector::zeros(),
+        FaceCondition::Free | FaceCondition::Held { .. } | FaceCondition::Frictional { .. } => {
+            SVector::zeros()
+        }
     }
 }
 

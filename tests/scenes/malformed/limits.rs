@@ -7,9 +7,9 @@ use super::Edit::{Replace, Set};
 pub(super) const NOT_IN_THIS_VERSION: &[Case] = &[
     ("three phases", Set("material.phases=3"), &["material.phases = 3 is not allowed", "expected 1", "or 2"]),
     ("Poisson's ratio", Set("material.law.linear-elastic.poissons_ratio=0.3"),
-     &["poissons_ratio = 0.3 is not possible in this version", "youngs_modulus"]),
-    ("two dimensions", Set("grid={min=[0, 0], max=[1, 1], cells=[4, 5]}"),
-     &["grid.cells = [4, 5] is not possible in this version", "one dimension"]),
+     &["poissons_ratio = 0.3", "one dimension knows uniaxial strain only"]),
+    ("two dimensions half told", Set("grid={min=[0, 0], max=[1, 1], cells=[4, 5]}"),
+     &["poissons_ratio is missing", "above -1 and below 0.5"]),
     ("a cubic spline in two dimensions", Set("method.reconstruction=spline\ngrid={min=[0, 0], max=[1, 1], cells=[4, 5]}"),
      &["method.reconstruction = \"spline\"", "exists in 1-D only", "2 axes"]),
     ("vtu", Set("output.particles=vtu"), &["output.particles = \"vtu\" is not possible in this version", "\"csv\", \"none\""]),

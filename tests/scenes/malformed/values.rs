@@ -76,7 +76,7 @@ pub(super) const BODIES: &[Case] = &[
     ("a body below the grid", Set("body.0.min=[-0.1]"), &["body.0.min = [-0.1]", "within the grid, 0.0 to 1.0 m"]),
     ("a body above the grid", Set("body.1.max=[1.1]"), &["body.1.max = [1.1]", "within the grid, 0.0 to 1.0 m"]),
     ("a body end of nan", Set("body.1.max=[nan]"), &["body.1.max.0 = NaN", "finite"]),
-    ("a boundary of nothing", Set("boundary.0={face=\"x-min\"}"), &["boundary.0 = {", "exactly one of fixed, velocity, traction", "none"]),
+    ("a boundary of nothing", Set("boundary.0={face=\"x-min\"}"), &["boundary.0 = {", "exactly one of fixed, roller, friction, velocity, traction", "none"]),
     ("a boundary of two kinds", Set("boundary.0.velocity=[\"0\"]"), &["boundary.0 = {", "exactly one", "fixed and velocity"]),
     ("two boundaries of a face", Set("boundary.1.face=x-min"), &["boundary.1.face = \"x-min\"", "boundary.0", "one [[boundary]] a face"]),
     ("a boundary that is not fixed", Set("boundary.0.fixed=false"), &["boundary.0.fixed = false", "is free"]),

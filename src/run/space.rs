@@ -1,0 +1,170 @@
+//! What differs between one, two and three dimensions: the laws, and the references.
+
+use nalgebra::SVector;
+
+use super::dispatch::{Built, Start};
+use super::error::RunError;
+use super::norms::Exact;
+use super::rate_law::{RateLaw, UniaxialRateLaw};
+use super::reference::{field_reference, solution};
+use super::schedule::Schedule;
+use super::state::{self, InitialState, Values, by_expressions};
+use crate::grid::Grid;
+use crate::law::{Hill, LinearElastic, Logarithmic, Moduli, NeoHookean};
+use crate::particles::Particles;
+use crate::reference::FieldReference;
+use crate::scalar::Scalar;
+use crate::scene::{Body, Law, ScalarKind, Scene};
+
+/// A scene in `D` dimensions: implemented for those that there are.
+pub trait InSpace<const D: usize> {
+    /// The stepper that the scene asks for, for steps of `dt` (s).
+    ///
+    /// # Errors
+    /// See [`RunError`].
+    fn build(&self, dt: f64) -> Built<D>;
+
+    /// What `body` starts with.
+    ///
+    /// # Errors
+    /// See [`RunError`].
+    fn initial_state<'a>(
+        &'a self,
+        body: &'a Body,
+        grid: &Grid<f64, D>,
+        dt: f64,
+    ) -> Result<InitialState<'a, D>, RunError>;
+
+    /// The reference at the end, at the particles' material points.
+    ///
+    /// # Errors
+    /// See [`RunError`].
+    fn exact(&self, particles: &Particles<f64, D>, schedule: &Schedule) -> Result<Exact, RunError>;
+
+    /// The reference whose body force drives the run.
+    ///
+    /// # Errors
+    /// See [`RunError`].
+    fn driver(&self) -> Result<Option<Box<dyn FieldReference<D>>>, RunError>;
+}
+
+impl InSpace<1> for Scene {
+    fn build(&self, dt: f64) -> Built<1> {
+        let start = Start::new(self, dt)?;
+        match self.method.scalar {
+            ScalarKind::F64 => uniaxial::<f64>(start),
+            ScalarKind::F32 => uniaxial::<f32>(start),
+        }
+    }
+
+    fn initial_state<'a>(
+        &'a self,
+        body: &'a Body,
+        grid: &Grid<f64, 1>,
+        _dt: f64,
+    ) -> Result<InitialState<'a, 1>, RunError> {
+        state::on_one_axis(self, body, grid)
+    }
+
+    fn exact(&self, particles: &Particles<f64, 1>, schedule: &Schedule) -> Result<Exact, RunError> {
+        match solution(self)? {
+            None => Ok(Exact::default()),
+            Some(solution) => Exact::on_one_axis(self, solution, particles, schedule),
+        }
+    }
+
+    fn driver(&self) -> Result<Option<Box<dyn FieldReference<1>>>, RunError> {
+        Ok(None)
+    }
+}
+
+fn uniaxial<T: Scalar>(start: Start<'_, 1>) -> Built<1> {
+    let law = start.scene.material.law;
+    let moduli = Moduli::uniaxial(T::lit(law.youngs_modulus()))?;
+    match law {
+        Law::LinearElastic { .. } => start.with_law(UniaxialRateLaw::LinearElastic(LinearElastic { moduli })),
+        Law::Hill { .. } => start.with_law(UniaxialRateLaw::Hill(Hill { moduli })),
+        Law::Logarithmic { .. } => start.with_law(UniaxialRateLaw::Logarithmic(Logarithmic { moduli })),
+        Law::NeoHookean { .. } => start.with_law(NeoHookean { moduli }),
+    }
+}
+
+macro_rules! beyond_one_axis {
+    ($dimension:literal) => {
+        impl InSpace<$dimension> for Scene {
+            fn build(&self, dt: f64) -> Built<$dimension> {
+                let start = Start::new(self, dt)?;
+                match self.material.law {
+                    Law::LinearElastic {
+                        youngs_modulus,
+                        poissons_ratio,
+                    } => {
+                        let moduli = Moduli::from_young(youngs_modulus, poissons_ratio)?;
+                        start.with_law(RateLaw::LinearElastic(LinearElastic { moduli }))
+                    }
+                    Law::Hill {
+                        youngs_modulus,
+                        poissons_ratio,
+                    } => {
+                        let moduli = Moduli::from_young(youngs_modulus, poissons_ratio)?;
+                        start.with_law(RateLaw::Hill(Hill { moduli }))
+                    }
+                    Law::NeoHookean {
+                        youngs_modulus,
+                        poissons_ratio,
+                    } => {
+                        let moduli = Moduli::from_young(youngs_modulus, poissons_ratio)?;
+                        start.with_law::<f64, _>(NeoHookean { moduli })
+                    }
+                    law @ Law::Logarithmic { .. } => Err(RunError::NoSuchLaw {
+                        law: law.name(),
+                        dimension: $dimension,
+                    }),
+                }
+            }
+
+            fn initial_state<'a>(
+                &'a self,
+                body: &'a Body,
+                _grid: &Grid<f64, $dimension>,
+                dt: f64,
+            ) -> Result<InitialState<'a, $dimension>, RunError> {
+                match self.driver()? {
+                    None => Ok(Box::new(move |x| by_expressions(body, x))),
+                    Some(reference) => Ok(Box::new(move |x| Ok(started(reference.as_ref(), x, dt)))),
+                }
+            }
+
+            fn exact(
+                &self,
+                particles: &Particles<f64, $dimension>,
+                schedule: &Schedule,
+            ) -> Result<Exact, RunError> {
+                match self.driver()? {
+                    None => Ok(Exact::default()),
+                    Some(reference) => Ok(Exact::in_space(reference.as_ref(), particles, schedule)),
+                }
+            }
+
+            fn driver(&self) -> Result<Option<Box<dyn FieldReference<$dimension>>>, RunError> {
+                field_reference(self)
+            }
+        }
+    };
+}
+
+beyond_one_axis!(2);
+beyond_one_axis!(3);
+
+/// The reference's state at the start, its velocity half a step before, where the stepper's lives.
+fn started<const D: usize>(reference: &dyn FieldReference<D>, x: &SVector<f64, D>, dt: f64) -> Values<D> {
+    let at_start = reference.at(x, 0.0);
+    let velocity = reference.at(x, -dt / 2.0).velocity;
+    Values {
+        displacement: at_start.displacement,
+        velocity,
+        stress: at_start.stress,
+        liquid_velocity: velocity,
+        pore_pressure: 0.0,
+    }
+}
