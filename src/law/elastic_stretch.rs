@@ -80,8 +80,9 @@ fn log_volume<T: Scalar>(s: T) -> Option<T> {
     let mut x = T::zero();
     for _ in 0..NEWTON_STEPS {
         let slope = T::one() - s * x.exp();
+        let below_maximum = slope > T::zero();
         // Also refuses what is not a number.
-        if !(slope > T::zero()) {
+        if !below_maximum {
             return None;
         }
         let change = (s * x.exp() - x) / slope;

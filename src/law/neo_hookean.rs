@@ -68,8 +68,9 @@ impl<T: Scalar> NeoHookean<T> {
             let residual = b.fold(-two * x, |sum, b| sum + b.ln());
             let slope = stress.zip_map(&b, |s, b| (s * x.exp() - lambda) / b).sum() / self.moduli.mu - two;
             let mut change = -residual / slope;
-            // The branch through rest has a falling residual.
-            if !(slope < T::zero()) || !change.is_finite() {
+            let falls = slope < T::zero() && change.is_finite();
+            // So it does on the branch through rest.
+            if !falls {
                 return None;
             }
             while !lawful(&self.squared_stretches(stress, x + change)) && change.abs() > T::default_epsilon()

@@ -128,8 +128,9 @@ impl<T: Scalar> Cone<T> {
         let deviator = deviator(strain);
         let (shear, volume) = (shear_stress(moduli, &deviator), strain.sum());
         let excess = shear + self.friction * bulk * volume - self.cohesion;
+        let yields = excess > T::zero();
         // Also leaves alone what is not a number.
-        if !(excess > T::zero()) {
+        if !yields {
             return Yield::Elastic;
         }
         let flow = excess / (moduli.mu + bulk * self.friction * self.dilation);
