@@ -24,9 +24,18 @@ fn check<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
     law: &L,
     claims: &LawClaims,
 ) -> Result<(), Failure> {
+    check_to(0.05, law, claims)
+}
+
+/// Up to a strain.
+fn check_to<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
+    strain: f64,
+    law: &L,
+    claims: &LawClaims,
+) -> Result<(), Failure> {
     let sample = LawSample {
         density: T::lit(2e3),
-        strain: T::lit(0.05),
+        strain: T::lit(strain),
     };
     check_law(law, &sample, claims)
 }
@@ -48,9 +57,10 @@ fn laws<T: Scalar, const D: usize>() -> Result<(), Failure> {
     let moduli = Moduli::from_young(T::lit(4e4), T::lit(0.3)).unwrap();
     check::<T, D, _>(&StVenantKirchhoff { moduli }, &ELASTIC)?;
     check::<T, D, _>(&Hencky { moduli }, &ELASTIC)?;
-    for gamma in [1.0, 7.0] {
+    // Of the exponent 7 a strain of 5 % is beyond what the check takes for small.
+    for (gamma, strain) in [(1.0, 0.05), (7.0, 0.01)] {
         let fluid = NewtonianFluid::new(T::lit(4e4), T::lit(gamma), T::one()).unwrap();
-        check::<T, D, _>(&fluid.bearing_tension(), &ELASTIC)?;
+        check_to::<T, D, _>(strain, &fluid.bearing_tension(), &ELASTIC)?;
     }
     let (metal, soil) = plastic(moduli, 10.0);
     check::<T, D, _>(&metal, &ELASTIC)?;
