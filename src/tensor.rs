@@ -1,4 +1,8 @@
-//! Small tensor operations that need the dimension spelled out.
+//! Small tensor operations that need the dimension spelled out, and principal values.
+
+mod spectral;
+
+pub use spectral::Spectral;
 
 use nalgebra::SMatrix;
 

@@ -1,16 +1,29 @@
-//! Constitutive laws.
+//! Constitutive laws. Equations, states and verified figures of all: `docs/laws.md`.
 
+mod constant;
+mod drucker_prager;
+mod elastic_stretch;
+mod hencky;
 mod hill;
 mod linear_elastic;
 mod logarithmic;
 mod moduli;
 mod neo_hookean;
+mod newtonian_fluid;
+mod st_venant_kirchhoff;
+mod von_mises;
 
+pub use drucker_prager::{ConeMatch, DruckerPrager, DruckerPragerState, Strength};
+pub use elastic_stretch::ElasticStretch;
+pub use hencky::Hencky;
 pub use hill::Hill;
 pub use linear_elastic::LinearElastic;
 pub use logarithmic::Logarithmic;
 pub use moduli::Moduli;
 pub use neo_hookean::{DeformationGradient, NeoHookean};
+pub use newtonian_fluid::{NewtonianFluid, VolumeRatio};
+pub use st_venant_kirchhoff::StVenantKirchhoff;
+pub use von_mises::{VonMises, VonMisesState};
 
 use nalgebra::SMatrix;
 
@@ -43,6 +56,36 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Sync {
     /// Carries stress (Cauchy, Pa, tension positive) and state over the displacement gradient
     /// `increment` of one step: row = component, column = derivative, taken at the step's start.
     fn update(&self, increment: &SMatrix<T, D, D>, stress: &mut SMatrix<T, D, D>, state: &mut Self::State);
+
+    /// The same over a step that takes `dt` (s), for laws that feel the rate of strain; this is what a step calls.
+    ///
+    /// A law that knows no time writes [`ConstitutiveLaw::update`] alone, and the default forwards to it at no cost. `update`
+    /// stays free of `dt` because the increment is all that most laws need, and because checks and the critical step ask for
+    /// the response to a strain, not to a rate. A law that does feel the rate gives in `update` its response without it.
+    #[inline(always)]
+    fn update_over(
+        &self,
+        _dt: T,
+        increment: &SMatrix<T, D, D>,
+        stress: &mut SMatrix<T, D, D>,
+        state: &mut Self::State,
+    ) {
+        self.update(increment, stress, state);
+    }
+
+    /// The state of material that is under `stress` (Cauchy, Pa) before it moves; `None` if the law has none.
+    ///
+    /// `off_plane` is the stress (Pa) along every axis that the grid does not have, such as `K_0 sigma_yy` in plane strain. `None`
+    /// stands for what elastic material would feel that has been strained in the grid's axes alone: `nu (sigma_xx + sigma_yy)`.
+    /// A law that remembers no strain off the plane answers `None` to any other.
+    ///
+    /// By default stress is carried by a law without state, and any other law starts from rest only. Laws whose stress
+    /// follows from their state must override it to be given an initial stress: the next update would forget it.
+    #[inline]
+    fn start(&self, stress: &SMatrix<T, D, D>, _off_plane: Option<T>) -> Option<Self::State> {
+        let free = stress.iter().all(|s| s.is_zero());
+        (free || size_of::<Self::State>() == 0).then(Self::State::default)
+    }
 
     /// Speed (m/s) of the fastest wave in material of the given current `density` (kg/m3).
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T;

@@ -48,6 +48,12 @@ impl<T: Scalar> Moduli<T> {
         Self::from_young(modulus, T::zero())
     }
 
+    /// Bulk modulus `lambda + 2 mu / 3` (Pa) of three dimensions, which plane and uniaxial strain live in.
+    #[inline(always)]
+    pub fn bulk(&self) -> T {
+        self.lambda + (self.mu + self.mu) / T::lit(3.0)
+    }
+
     /// Modulus of uniaxial strain `lambda + 2 mu` (Pa).
     #[inline(always)]
     pub fn p_wave(&self) -> T {

@@ -1,10 +1,10 @@
 //! Compressible neo-Hookean elasticity.
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 use super::{ConstitutiveLaw, Moduli};
 use crate::scalar::Scalar;
-use crate::tensor::determinant;
+use crate::tensor::{Spectral, determinant, symmetric};
 
 /// Deformation gradient of a particle; the default is the identity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +43,49 @@ impl<T: Scalar> NeoHookean<T> {
     }
 }
 
+/// Newton steps for the volume that belongs to a stress; five or so are taken.
+const NEWTON_STEPS: usize = 60;
+
+impl<T: Scalar> NeoHookean<T> {
+    /// Squared principal stretches of principal stresses at `J = exp(x)`.
+    fn squared_stretches<const D: usize>(&self, stress: &SVector<T, D>, x: T) -> SVector<T, D> {
+        let Moduli { lambda, mu } = self.moduli;
+        stress.map(|s| T::one() + (s * x.exp() - lambda * x) / mu)
+    }
+
+    /// Squared principal stretches under principal stresses: one equation for `x = ln J`, `sum ln b(x) = 2 x`.
+    fn stretches_under<const D: usize>(&self, stress: &SVector<T, D>) -> Option<SVector<T, D>> {
+        let (lambda, two) = (self.moduli.lambda, T::lit(2.0));
+        let lawful = |b: &SVector<T, D>| b.iter().all(|b| *b > T::zero());
+        let mut x = T::zero();
+        for _ in 0..NEWTON_STEPS {
+            let b = self.squared_stretches(stress, x);
+            if !lawful(&b) {
+                // Pressed beyond the shear modulus: look at smaller volumes.
+                x -= T::one() / two;
+                continue;
+            }
+            let residual = b.fold(-two * x, |sum, b| sum + b.ln());
+            let slope = stress.zip_map(&b, |s, b| (s * x.exp() - lambda) / b).sum() / self.moduli.mu - two;
+            let mut change = -residual / slope;
+            let falls = slope < T::zero() && change.is_finite();
+            // So it does on the branch through rest.
+            if !falls {
+                return None;
+            }
+            while !lawful(&self.squared_stretches(stress, x + change)) && change.abs() > T::default_epsilon()
+            {
+                change /= two;
+            }
+            x += change;
+            if change.abs() <= T::lit(4.0) * T::default_epsilon() * (T::one() + x.abs()) {
+                return Some(self.squared_stretches(stress, x));
+            }
+        }
+        None
+    }
+}
+
 impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NeoHookean<T> {
     type State = DeformationGradient<T, D>;
 
@@ -55,6 +98,17 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NeoHookean<T> {
     fn update(&self, increment: &SMatrix<T, D, D>, stress: &mut SMatrix<T, D, D>, state: &mut Self::State) {
         state.0 += increment * state.0;
         *stress = self.stress(&state.0);
+    }
+
+    /// A stretch without rotation. `None` for a given stress off the plane, where this solid is not strained.
+    fn start(&self, stress: &SMatrix<T, D, D>, off_plane: Option<T>) -> Option<Self::State> {
+        if D < 3 && off_plane.is_some() {
+            return None;
+        }
+        let spectral = Spectral::of(&symmetric(stress));
+        let squared = self.stretches_under(&spectral.values)?;
+        let stretch = spectral.with_values(&squared.map(|b| b.sqrt()));
+        Some(DeformationGradient(stretch))
     }
 
     /// From `J d sigma/dJ` along the most stretched axis. Its squared stretch is the largest row sum of `F F^T` (Gershgorin):

@@ -4,6 +4,7 @@ mod bins;
 mod cast;
 mod lattice;
 mod movable;
+mod start;
 
 pub(crate) use bins::settle;
 pub use bins::{Bins, Outside};

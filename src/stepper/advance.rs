@@ -51,7 +51,7 @@ where
                         phase.update(&increment, particle.phase);
                     }
                     particle
-                        .advance(law, &(v * dt), &increment)
+                        .advance(law, dt, &(v * dt), &increment)
                         .map_err(|flaw| Fault::Material(first + k, flaw))?;
                     let crossed = settle(grid, cell, particle.position).ok_or(Fault::Left(first + k))?;
                     crossings += usize::from(crossed);
@@ -80,18 +80,19 @@ where
 }
 
 impl<T: Scalar, const D: usize, S: Copy, Q> Movable<'_, T, D, S, Q> {
-    /// Moves the particle by `path` and deforms it by `increment`; the error is a volume that is no longer a positive number, or a stress
+    /// Moves the particle by `path` and deforms it by `increment` within `dt`; the error is a volume that is no longer a positive number, or a stress
     /// that the law does not know.
     #[inline(always)]
     pub(super) fn advance<L: ConstitutiveLaw<T, D, State = S>>(
         &mut self,
         law: &L,
+        dt: T,
         path: &SVector<T, D>,
         increment: &SMatrix<T, D, D>,
     ) -> Result<(), Flaw<T>> {
         *self.position += path;
         *self.displacement += path;
-        law.update(increment, self.stress, self.state);
+        law.update_over(dt, increment, self.stress, self.state);
         if !law.knows(self.stress, self.state) {
             return Err(Flaw::Stress(self.stress[(0, 0)]));
         }

@@ -48,7 +48,7 @@ where
                 });
             }
             particle
-                .advance(law, &(v * dt), &increment)
+                .advance(law, dt, &(v * dt), &increment)
                 .map_err(|flaw| flaw.error(steps, p, L::LIMITS))?;
             match settle(grid, cell, particle.position) {
                 Some(crossed) => crossings += usize::from(crossed),

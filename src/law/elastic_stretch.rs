@@ -1,0 +1,171 @@
+//! Elastic stretch in principal axes: what Hencky's law and the plastic laws built on it share.
+
+use nalgebra::{SMatrix, SVector, Vector3};
+
+use super::Moduli;
+use crate::scalar::Scalar;
+use crate::tensor::{Spectral, symmetric};
+
+/// Newton steps for the volume that belongs to a stress; it takes about one per factor of e in the volume.
+const NEWTON_STEPS: usize = 100;
+
+/// Elastic left Cauchy-Green tensor `b_e = F_e F_e^T` in three dimensions, whatever the grid's; the default is the identity.
+///
+/// Below 3-D the axes off the plane are principal and, if there are two of them, alike: one number holds them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElasticStretch<T, const D: usize> {
+    /// `b_e` in the grid's axes.
+    pub b: SMatrix<T, D, D>,
+    /// Squared elastic stretch along the axes that the grid does not have; 1 in 3-D.
+    pub off_plane: T,
+}
+
+impl<T: Scalar, const D: usize> Default for ElasticStretch<T, D> {
+    fn default() -> Self {
+        Self {
+            b: SMatrix::identity(),
+            off_plane: T::one(),
+        }
+    }
+}
+
+impl<T: Scalar, const D: usize> ElasticStretch<T, D> {
+    /// Elastic trial: the whole increment stretches the material elastically.
+    #[inline(always)]
+    pub(super) fn carry(&mut self, increment: &SMatrix<T, D, D>) {
+        let f = SMatrix::identity() + increment;
+        // Symmetric up to round-off, which must not pile up.
+        self.b = symmetric(&(f * self.b * f.transpose()));
+    }
+
+    /// In principal axes.
+    #[inline(always)]
+    pub(super) fn principal(&self) -> Principal<T, D> {
+        let spectral = Spectral::of(&self.b);
+        let squared = in_space(&spectral.values, self.off_plane);
+        Principal {
+            strain: squared.map(|b| b.ln() / T::lit(2.0)),
+            spectral,
+        }
+    }
+
+    /// The stretch under the Cauchy stress `stress` (Pa), and `off_plane` along the other axes; see
+    /// [`ConstitutiveLaw::start`](super::ConstitutiveLaw::start). `None` where Hencky's law knows no such stress.
+    ///
+    /// Kirchhoff's stress `J sigma` is linear in the logarithmic strain, which leaves one equation for the volume,
+    /// `ln J = J tr(sigma) / (3 K)`. It has a solution up to the mean stress `K / e`.
+    pub(super) fn under_stress(
+        moduli: &Moduli<T>,
+        stress: &SMatrix<T, D, D>,
+        off_plane: Option<T>,
+    ) -> Option<Self> {
+        let two = T::lit(2.0);
+        let spectral = Spectral::of(&symmetric(stress));
+        // Of no strain off the plane.
+        let share = moduli.lambda / (T::count(D) * moduli.lambda + two * moduli.mu);
+        let off_plane = off_plane.unwrap_or(share * stress.trace());
+        let stress = in_space(&spectral.values, off_plane);
+        let three = T::lit(3.0);
+        let log_volume = log_volume(stress.sum() / (three * moduli.bulk()))?;
+        let (volume, mean) = (log_volume.exp(), moduli.bulk() * log_volume);
+        let strain = stress.map(|s| (volume * s - mean) / (two * moduli.mu) + log_volume / three);
+        let found = Principal { spectral, strain }.stretch();
+        let finite = found.b.iter().all(|b| b.is_finite()) && found.off_plane.is_finite();
+        finite.then_some(found)
+    }
+}
+
+/// Solves `x = s exp(x)` for the branch through zero. Newton's steps from zero never cross the root.
+fn log_volume<T: Scalar>(s: T) -> Option<T> {
+    let mut x = T::zero();
+    for _ in 0..NEWTON_STEPS {
+        let slope = T::one() - s * x.exp();
+        let below_maximum = slope > T::zero();
+        // Also refuses what is not a number.
+        if !below_maximum {
+            return None;
+        }
+        let change = (s * x.exp() - x) / slope;
+        x += change;
+        if change.abs() <= T::default_epsilon() * x.abs() {
+            return Some(x);
+        }
+    }
+    None
+}
+
+/// The values in the grid's principal axes, followed by those off the plane.
+#[inline(always)]
+fn in_space<T: Scalar, const D: usize>(values: &SVector<T, D>, off_plane: T) -> Vector3<T> {
+    Vector3::from_fn(|i, _| if i < D { values[i] } else { off_plane })
+}
+
+/// An elastic stretch in its principal axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Principal<T, const D: usize> {
+    spectral: Spectral<T, D>,
+    /// Elastic logarithmic strains, those in the grid's axes first.
+    pub(super) strain: Vector3<T>,
+}
+
+impl<T: Scalar, const D: usize> Principal<T, D> {
+    /// The stretch with these principal strains.
+    #[inline(always)]
+    pub(super) fn stretch(&self) -> ElasticStretch<T, D> {
+        let squared = self.strain.map(|e| (e + e).exp());
+        ElasticStretch {
+            b: self.in_plane(&squared),
+            off_plane: if D < 3 { squared[2] } else { T::one() },
+        }
+    }
+
+    /// Volume ratio of the elastic stretch.
+    #[inline(always)]
+    pub(super) fn volume(&self) -> T {
+        self.strain.sum().exp()
+    }
+
+    /// Cauchy stress (Pa) of material with the volume ratio `j`.
+    #[inline(always)]
+    pub(super) fn stress(&self, moduli: &Moduli<T>, j: T) -> SMatrix<T, D, D> {
+        self.in_plane(&(kirchhoff(moduli, &self.strain) / j))
+    }
+
+    /// Cauchy stress (Pa) along the axes that the grid does not have.
+    pub(super) fn off_plane_stress(&self, moduli: &Moduli<T>, j: T) -> T {
+        kirchhoff(moduli, &self.strain)[2] / j
+    }
+
+    #[inline(always)]
+    fn in_plane(&self, values: &Vector3<T>) -> SMatrix<T, D, D> {
+        self.spectral.with_values(&SVector::from_fn(|i, _| values[i]))
+    }
+}
+
+/// Principal Kirchhoff stresses (Pa) of principal logarithmic strains, `lambda tr(e) + 2 mu e`.
+#[inline(always)]
+fn kirchhoff<T: Scalar>(moduli: &Moduli<T>, strain: &Vector3<T>) -> Vector3<T> {
+    let isotropic = moduli.lambda * strain.sum();
+    strain.map(|e| isotropic + (moduli.mu + moduli.mu) * e)
+}
+
+/// Strain energy per reference volume (J/m3) of principal logarithmic strains.
+pub(super) fn stored_energy<T: Scalar>(moduli: &Moduli<T>, strain: &Vector3<T>) -> T {
+    let trace = strain.sum();
+    moduli.lambda * trace * trace / T::lit(2.0) + moduli.mu * strain.dot(strain)
+}
+
+/// `rho c^2` (Pa) of the fastest wave, from `J d sigma/dJ = (lambda + 2 mu)/J - sigma` along the most compressed axis. The lowest
+/// principal stress is taken from Gershgorin: exact where it lies along an axis, a bound elsewhere.
+pub(super) fn wave_modulus<T: Scalar, const D: usize>(
+    moduli: &Moduli<T>,
+    stress: &SMatrix<T, D, D>,
+    j: T,
+) -> T {
+    let bound = |a: usize| {
+        let row_sum = stress.row(a).iter().fold(T::zero(), |sum, s| sum + s.abs());
+        stress[(a, a)] + stress[(a, a)].abs() - row_sum
+    };
+    let lowest = (1..D).fold(bound(0), |lowest, a| lowest.min(bound(a)));
+    (moduli.p_wave() / j - lowest).max(T::zero())
+}
