@@ -14,6 +14,7 @@ mod labels;
 mod legend;
 mod page;
 mod panel;
+mod replace;
 mod scale;
 mod study;
 mod style;
