@@ -64,6 +64,26 @@ pub enum OutputError {
         /// Length of the first column.
         expected: usize,
     },
+    /// A field of particles that has not one value, or one set of components, for each.
+    #[error("`{}`: the field `{field}` has {found} values where the particles need {expected}", path.display())]
+    Field {
+        /// The file asked for.
+        path: PathBuf,
+        /// Name of the field.
+        field: String,
+        /// How many values it has.
+        found: usize,
+        /// Particles times components.
+        expected: usize,
+    },
+    /// A field of particles without a name, or with that of another.
+    #[error("`{}`: the name `{field}` of a field is empty or taken; each needs one of its own", path.display())]
+    FieldName {
+        /// The file asked for.
+        path: PathBuf,
+        /// The name.
+        field: String,
+    },
 }
 
 fn remains(older: &bool) -> &'static str {

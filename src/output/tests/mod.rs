@@ -4,3 +4,5 @@ mod files;
 mod full_disk;
 mod pictures;
 mod scratch;
+mod series;
+mod vtu;
