@@ -1,12 +1,11 @@
 //! The output folder, checked before anything is computed.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::process;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::OutputError;
+use super::replace::{replace, temporary};
 
 /// An output folder that exists and was writable when it was made.
 #[derive(Clone, Debug)]
@@ -37,37 +36,24 @@ impl Folder {
     }
 
     /// Writes a file of this name, replacing an older one, and returns where it is.
+    ///
+    /// # Errors
+    /// Those of [`write_with`](Folder::write_with).
     pub fn write(&self, name: &str, content: &str) -> Result<PathBuf, OutputError> {
         self.write_with(name, |file| file.write_all(content.as_bytes()))
     }
 
-    /// Fills a file of a temporary name and renames it, so that a failure leaves no half file and spares the
-    /// older one.
-    pub(super) fn write_with(
+    /// Lets `fill` stream a file of this name, which replaces an older one when it is complete and on the disk; returns
+    /// where it is. `fill` writes to a buffer of its own, nothing needs to be held in memory.
+    ///
+    /// # Errors
+    /// [`OutputError::DiskFull`] if the space or the quota is exhausted, otherwise [`OutputError::Write`] with what
+    /// `fill` or the system reported. The older file is then as it was, and nothing of the new one is left.
+    pub fn write_with(
         &self,
         name: &str,
-        fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<PathBuf, OutputError> {
-        let path = self.path.join(name);
-        let unfinished = self.path.join(temporary(name));
-        let written = fill_file(&unfinished, fill).and_then(|()| fs::rename(&unfinished, &path));
-        written.map(|()| path.clone()).map_err(|source| {
-            // The first error is the one to report; a file that was never made cannot be removed.
-            let _ = fs::remove_file(&unfinished);
-            OutputError::Write { path, source }
-        })
+        replace(self.path.join(name), |path| File::create(path), fill)
     }
-}
-
-fn fill_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
-    let mut file = BufWriter::new(File::create(path)?);
-    fill(&mut file)?;
-    file.flush()
-}
-
-/// A hidden name that no other writer, in this process or another, uses at the same time.
-fn temporary(name: &str) -> String {
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    format!(".{name}.{}-{count}.tmp", process::id())
 }

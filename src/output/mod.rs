@@ -1,4 +1,4 @@
-//! What a run leaves on disk: tables as CSV and pictures as SVG.
+//! What a run leaves on disk: tables as CSV, particles as VTK files with their index, pictures as SVG.
 //!
 //! [`Folder`] is checked before anything is computed, and a file in it is complete or absent. Pictures are
 //! returned as text, drawn from four primitives; a plotting crate would place them on whole pixels and bring
@@ -14,6 +14,8 @@ mod labels;
 mod legend;
 mod page;
 mod panel;
+mod pvd;
+mod replace;
 mod scale;
 mod study;
 mod style;
@@ -21,6 +23,7 @@ mod svg;
 mod table;
 mod text;
 mod ticks;
+mod vtu;
 
 pub use error::OutputError;
 pub use fields::draw_fields;
@@ -28,8 +31,10 @@ pub use folder::Folder;
 pub use grid_of_fields::draw_grid_of_fields;
 pub use page::{PageError, fill_in};
 pub use panel::FieldPanel;
+pub use pvd::{Series, SeriesFrame};
 pub use study::{Curve, CurvePoint, draw_study};
 pub use table::{Records, Table, number};
+pub use vtu::{Components, PointCloud, PointField};
 
 #[cfg(test)]
 mod tests;

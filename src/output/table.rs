@@ -92,10 +92,18 @@ where
 {
     folder.write_with(name, |file| {
         let mut csv = csv::Writer::from_writer(file);
-        csv.write_record(header).map_err(io::Error::from)?;
+        csv.write_record(header).map_err(system)?;
         for row in rows {
-            csv.write_record(row).map_err(io::Error::from)?;
+            csv.write_record(row).map_err(system)?;
         }
         csv.flush()
     })
+}
+
+/// The system's own error, which knows a full disk, where there is one within.
+fn system(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        kind => io::Error::other(format!("{kind:?}")),
+    }
 }

@@ -1,28 +1,9 @@
 //! Goal: what is written reads back to the bit, and what cannot be written says where and why.
 
 use std::fs;
-use std::path::PathBuf;
 
+use super::scratch::Scratch;
 use crate::output::{Folder, OutputError, Records, Table};
-
-/// A folder of this test alone, removed at its end.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str) -> Scratch {
-        Scratch(std::env::temp_dir().join(format!("materialpoint-{name}-{}", std::process::id())))
-    }
-
-    fn folder(&self) -> Folder {
-        Folder::create(&self.0.join("a/b")).unwrap()
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
 
 fn table(columns: Vec<Vec<f64>>) -> Table {
     Table {

@@ -1,4 +1,8 @@
 //! Files and pictures, with good and degenerate data.
 
 mod files;
+mod full_disk;
 mod pictures;
+mod scratch;
+mod series;
+mod vtu;
