@@ -30,7 +30,8 @@ pub struct Line {
     pub variant: usize,
     /// Where it goes, in drawing order; a point that cannot be drawn breaks it.
     pub points: Vec<(f64, f64)>,
-    /// What stands beside a cross at its end, such as `5.2 s` where a run stopped; empty for neither.
+    /// What stands beside a cross at its last point, such as `5.2 s` where a run stopped; empty for neither. If the point lies
+    /// above or below the axis, the cross is at its edge.
     pub stopped: String,
 }
 
@@ -257,16 +258,17 @@ impl LinePanel {
                 canvas.line(piece, stroke(line.family, line.variant));
                 obstacles.line(piece);
             }
-            let end = pieces.last().and_then(|piece| piece.last());
-            if let (false, Some(end)) = (line.stopped.is_empty(), end) {
-                ends.push((*end, line));
-                obstacles.marker(*end, 6.0);
+            let end = line.points.iter().rev().find_map(|pair| frame.place(*pair));
+            if let (false, Some((x, y))) = (line.stopped.is_empty(), end) {
+                let end = (x, y.clamp(frame.top, frame.bottom()));
+                ends.push((end, line));
+                obstacles.marker(end, 6.0);
             }
         }
         for (end, line) in ends {
             let colour = stroke(line.family, line.variant).colour;
             cross(canvas, end, colour);
-            let (x, y) = obstacles.place(end, &line.stopped, TICK);
+            let (x, y) = obstacles.place_far(end, &line.stopped, TICK);
             let font = Font::new(TICK, colour, Anchor::Middle).halo();
             canvas.text((x, y + 0.35 * TICK), &line.stopped, font);
         }
