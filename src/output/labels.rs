@@ -70,9 +70,18 @@ impl Obstacles {
 
     /// The centre of the best place for a label beside a point; from then on it is an obstacle itself.
     pub fn place(&mut self, beside: Point, label: &str, size: f64) -> Point {
+        self.place_at(beside, label, size, &[11.0, 18.0])
+    }
+
+    /// The same where points crowd: the label may stand a few lines away.
+    pub fn place_far(&mut self, beside: Point, label: &str, size: f64) -> Point {
+        self.place_at(beside, label, size, &[11.0, 18.0, 28.0, 38.0, 48.0, 58.0])
+    }
+
+    fn place_at(&mut self, beside: Point, label: &str, size: f64, gaps: &[f64]) -> Point {
         let (half_width, half_height) = (0.5 * text::width(label, size) + 1.0, 0.55 * size);
         let mut best = (beside, f64::INFINITY);
-        for (rank, at) in candidates(beside, half_width, half_height).enumerate() {
+        for (rank, at) in candidates(beside, half_width, half_height, gaps).enumerate() {
             // Between equals the earlier candidate wins.
             let cost = self.cost(&Area::around(at, half_width, half_height)) + 0.5 * rank as f64;
             if cost < best.1 {
@@ -91,7 +100,7 @@ impl Obstacles {
 }
 
 /// Near before far, and the side towards the origin first: no data lie on that side of the best points.
-fn candidates((x, y): Point, half_width: f64, half_height: f64) -> impl Iterator<Item = Point> {
+fn candidates((x, y): Point, half_width: f64, half_height: f64, gaps: &[f64]) -> impl Iterator<Item = Point> {
     const SIDES: [Point; 8] = [
         (-0.8, 0.8),
         (-1.0, 0.0),
@@ -102,7 +111,7 @@ fn candidates((x, y): Point, half_width: f64, half_height: f64) -> impl Iterator
         (0.8, 0.8),
         (0.8, -0.8),
     ];
-    [11.0, 18.0].into_iter().flat_map(move |gap| {
+    gaps.iter().flat_map(move |gap| {
         SIDES.map(|(dx, dy)| (x + dx * (half_width + gap), y + dy * (half_height + gap)))
     })
 }

@@ -27,6 +27,8 @@ pub(super) const PARTICLE: &str = "#0072B2";
 pub(super) const REFERENCE: &str = "#E69F00";
 /// Width of the line of the reference (px).
 pub(super) const REFERENCE_WIDTH: f64 = 6.0;
+/// Areas behind lines.
+pub(super) const SHADE: &str = "#d9d9d9";
 /// Points that lie outside a panel.
 pub(super) const OUTSIDE: &str = "#D55E00";
 

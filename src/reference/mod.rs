@@ -8,7 +8,8 @@
 //! |---|---|---|
 //! | [`VibratingBar`] | closed form | bar with fixed ends, small strain |
 //! | [`StaticColumn`] | closed form | column under its weight, at rest, small or large strain |
-//! | [`LagrangianBar`] | converged numerically, with an estimate of its own error | bar and column in motion, any elastic law |
+//! | [`LagrangianBar`] | converged numerically, with an estimate of its own error | bar and column in motion, any elastic law, until waves break |
+//! | [`EntropyBar`] | converged numerically, with an estimate of its own error | the same with shocks |
 //! | [`Consolidation`](two_phase::Consolidation) | closed form | consolidation, small strain |
 //! | [`XieLeo`](two_phase::XieLeo) | closed form | consolidation, large strain, without inertia |
 //! | [`StandingWave`](two_phase::StandingWave) | closed form | damped waves in saturated soil, small strain |
@@ -22,6 +23,7 @@
 //! application to material point methods*, Int. J. Numer. Methods Eng. 117 (2019), doi 10.1002/nme.5956.
 
 mod check;
+mod entropy_bar;
 mod error;
 mod lagrangian_bar;
 mod lobatto;
@@ -31,6 +33,7 @@ pub mod two_phase;
 mod uniaxial_law;
 mod vibrating_bar;
 
+pub use entropy_bar::{EntropyBar, EntropyEstimate};
 pub use error::ReferenceError;
 pub use lagrangian_bar::{BarProblem, End, LagrangianBar, Resolution};
 pub use space::{FieldReference, FieldState, Manufactured};

@@ -1,6 +1,9 @@
 //! Goal: every picture is well-formed, says what it shows, and draws whatever the data are.
 
-use crate::output::{Curve, CurvePoint, FieldPanel, draw_fields, draw_grid_of_fields, draw_study};
+use crate::output::{
+    Curve, CurvePoint, FieldPanel, Line, LineAxis, LineCaptions, LinePanel, draw_fields, draw_grid_of_fields,
+    draw_lines, draw_study,
+};
 
 /// Parses a picture: tags balance, every number is a number, no markup leaks from texts.
 fn check(svg: &str) {
@@ -49,6 +52,41 @@ fn curve(points: &[(f64, f64)]) -> Curve {
     }
 }
 
+/// Lines that stop, before a reference and a shade.
+fn lines(title: &str, axis: LineAxis, points: &[(f64, f64)], reference: &[(f64, f64)]) -> String {
+    let captions = LineCaptions {
+        title,
+        x: "position <x> [m]",
+        y: "energy [-]",
+        reference: "exact",
+        stopped: "stopped",
+        shaded: "grows",
+    };
+    let line = Line {
+        label: "linear + <Taylor>".into(),
+        family: 7,
+        variant: 9,
+        points: points.to_vec(),
+        stopped: "3 s".into(),
+    };
+    let panel = LinePanel {
+        name: "a & b".into(),
+        lines: vec![line.clone(), line],
+        reference: reference.to_vec(),
+        shaded: points.iter().map(|&(x, y)| [x, x + 1.0, y, y + 1.0]).collect(),
+    };
+    draw_lines(&captions, axis, &[panel.clone(), panel], 2)
+}
+
+const LOG: LineAxis = LineAxis {
+    range: (0.1, 10.0),
+    log: true,
+};
+const PLAIN: LineAxis = LineAxis {
+    range: (0.0, 2.0),
+    log: false,
+};
+
 const HARD: [&[(f64, f64)]; 8] = [
     &[],
     &[(0.0, 0.0)],
@@ -78,6 +116,7 @@ fn texts_are_there_and_escaped() {
             3,
         ),
         draw_study("a < b & c", "position <x> [m]", "error [-]", &[curve(&data)]),
+        lines("a < b & c", LOG, &data, &data),
     ];
     for svg in pictures {
         check(&svg);
@@ -99,6 +138,22 @@ fn every_field_draws() {
     }
     check(&draw_fields("", "", &[]));
     check(&draw_grid_of_fields("", "", "", &[], 3));
+}
+
+#[test]
+fn every_line_draws_and_has_one_entry_in_the_legend() {
+    for points in HARD {
+        for reference in HARD {
+            for axis in [LOG, PLAIN] {
+                let svg = lines("t", axis, points, reference);
+                check(&svg);
+                assert_eq!(svg.matches("linear + &lt;Taylor&gt;").count(), 1);
+            }
+        }
+    }
+    let captions = LineCaptions::default();
+    assert!(draw_lines(&captions, PLAIN, &[], 3).contains("no data"));
+    assert!(draw_lines(&captions, PLAIN, &[LinePanel::default()], 0).contains("no data"));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::super::{ReferenceError, UniaxialLaw, check};
 
 /// A function of position or time that a bar can keep and share with its coarser copy.
-pub(super) type Function = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
+pub(in crate::reference) type Function = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
 
 /// What holds one end of the bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,15 +30,15 @@ pub enum End {
 /// ```
 #[derive(Clone)]
 pub struct BarProblem<L> {
-    pub(super) length: f64,
-    pub(super) density: f64,
-    pub(super) law: L,
-    pub(super) origin: f64,
-    pub(super) ends: [End; 2],
-    pub(super) initial_velocity: Function,
-    pub(super) body_force: Function,
+    pub(in crate::reference) length: f64,
+    pub(in crate::reference) density: f64,
+    pub(in crate::reference) law: L,
+    pub(in crate::reference) origin: f64,
+    pub(in crate::reference) ends: [End; 2],
+    pub(in crate::reference) initial_velocity: Function,
+    pub(in crate::reference) body_force: Function,
     /// Times at which the body force is not smooth, s, in rising order.
-    pub(super) kinks: Vec<f64>,
+    pub(in crate::reference) kinks: Vec<f64>,
 }
 
 impl<L> BarProblem<L> {
@@ -95,7 +95,7 @@ impl<L> BarProblem<L> {
 
 impl<L: UniaxialLaw> BarProblem<L> {
     /// Refuses what cannot be marched from time 0.
-    pub(super) fn check(&self) -> Result<(), ReferenceError> {
+    pub(in crate::reference) fn check(&self) -> Result<(), ReferenceError> {
         check::positive("length", self.length)?;
         check::positive("density", self.density)?;
         check::finite("origin", self.origin)?;
