@@ -8,6 +8,8 @@ mod convergence;
 mod examples;
 mod hard_cases;
 mod identities;
+mod laws;
 mod phase;
 mod scenes;
+mod space;
 mod two_phase;

@@ -44,7 +44,11 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
                 "strain = \"small\": Hooke; strain = \"large\": Hill's rate",
             ),
             ("neo-hookean", "strain = \"large\": compressible neo-Hookean"),
-            ("logarithmic", "strain = \"large\": stress E ln J, 1-D"),
+            ("logarithmic", "strain = \"large\": stress E ln J; Hencky beyond 1-D"),
+            ("st-venant-kirchhoff", "strain = \"large\", 2-D and 3-D"),
+            ("von-mises", "strain = \"large\", hardening, 2-D and 3-D"),
+            ("drucker-prager", "strain = \"large\", cohesion, dilation, 2-D and 3-D"),
+            ("newtonian-fluid", "strain = \"large\", weakly compressible, 2-D and 3-D"),
         ],
     ),
     (
@@ -84,6 +88,10 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
                 "self-weight",
                 "two phases: saturated column at rest under its weight, small strain",
             ),
+            (
+                "manufactured",
+                "2-D and 3-D: neo-Hookean waves in a box on rollers, exact at finite strain",
+            ),
         ],
     ),
 ];
@@ -93,7 +101,7 @@ pub(super) fn list() -> String {
     let mut lines = Vec::new();
     for (heading, names) in NAMES {
         lines.push(heading.to_owned());
-        lines.extend(names.iter().map(|(name, words)| format!("  {name:<18} {words}")));
+        lines.extend(names.iter().map(|(name, words)| format!("  {name:<19} {words}")));
     }
     lines.push("scenes (compiled in; give the name instead of a file)".to_owned());
     lines.extend(Scene::builtin_names().map(|name| format!("  {name}")));

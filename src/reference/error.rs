@@ -53,6 +53,13 @@ pub enum ReferenceError {
         highest: usize,
     },
 
+    /// A law that solutions along one axis do not know.
+    #[error("there is no solution along one axis for the law {law}")]
+    UnknownLaw {
+        /// Its name in scenes.
+        law: &'static str,
+    },
+
     /// A motion whose material would turn inside out.
     #[error("amplitude {amplitude} m folds the material; expected less than {largest} m")]
     Folds {

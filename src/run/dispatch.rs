@@ -120,7 +120,7 @@ impl<L> Rest<'_, L> {
         basis: B,
         reconstruction: R,
         phase: P,
-        particles: Particles<T, D, L::State, P::Particle>,
+        mut particles: Particles<T, D, L::State, P::Particle>,
     ) -> Built<D>
     where
         T: Scalar,
@@ -129,6 +129,9 @@ impl<L> Rest<'_, L> {
         L: ConstitutiveLaw<T, D> + Clone + 'static,
         P: Phase<T, D> + Clone + 'static,
     {
+        if self.scene.bodies.iter().any(|body| body.stress.is_some()) {
+            particles.start_under_stress(&self.law, |_, _| None)?;
+        }
         let stepper = Stepper::new(Setup {
             grid: grid(self.scene)?,
             basis,

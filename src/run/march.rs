@@ -1,18 +1,16 @@
 //! The step loop.
 
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use super::Progress;
 use super::critical_step_in;
 use super::error::RunError;
+use super::frames::Frames;
 use super::limits::remedy;
 use super::loads::forcing;
-use super::particle_table::particle_table;
 use super::schedule::Schedule;
 use super::space::InSpace;
-use crate::output::Folder;
-use crate::scene::{ParticleOutput, Scene};
+use crate::scene::Scene;
 use crate::stepper::Simulation;
 
 /// Energy is sampled this often in a run: often enough to see it grow, seldom enough to cost nothing.
@@ -67,8 +65,7 @@ pub(super) fn march<const D: usize>(
     simulation: &mut dyn Simulation<D>,
     schedule: &Schedule,
     samples: usize,
-    folder: Option<&Folder>,
-    files: &mut Vec<PathBuf>,
+    frames: &mut Frames<'_>,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<March, RunError>
 where
@@ -77,6 +74,9 @@ where
     let mut march = March::default();
     let start = march.energy.sample(simulation.energy().total());
     start.map_err(|value| RunError::NoEnergyAtStart { value })?;
+    if frames.begin_at_start() {
+        frames.write(Some(0), 0.0, &simulation.particles(), &simulation.liquid())?;
+    }
     let steps = schedule.steps;
     let driver = scene.driver()?;
     let sample_every = steps.div_ceil(samples.max(1)).max(1);
@@ -111,10 +111,9 @@ where
                     remedy,
                 });
             }
-            if let (true, ParticleOutput::Csv, Some(folder)) = (writes, scene.output.particles, folder) {
-                let name = format!("particles-{done:08}.csv");
-                let table = particle_table(scene, &simulation.particles(), &simulation.liquid());
-                files.push(table.write_csv(folder, &name)?);
+            if writes && frames.are_wanted() {
+                let (particles, liquid) = (simulation.particles(), simulation.liquid());
+                frames.write(Some(done), schedule.time(done), &particles, &liquid)?;
             }
             progress(Progress { step: done, steps });
             begun = Instant::now();

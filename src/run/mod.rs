@@ -3,6 +3,8 @@
 mod dispatch;
 mod error;
 mod fields;
+mod frames;
+mod history_law;
 mod initial;
 mod limits;
 mod loads;
@@ -26,15 +28,15 @@ pub use summary::{ConservationSummary, EnergySummary, MethodSummary, Summary};
 
 use std::path::PathBuf;
 
+use frames::Frames;
 use loads::forcing;
 use march::{ENERGY_SAMPLES, march};
-use particle_table::particle_table;
 use schedule::Schedule;
 
 use crate::output::Folder;
 use crate::particles::Particles;
 use crate::phase::PoreLiquid;
-use crate::scene::{ParticleOutput, Scene};
+use crate::scene::Scene;
 use crate::stepper::{CriticalStep, Simulation};
 
 /// How far a run has come.
@@ -102,22 +104,19 @@ where
     let schedule = Schedule::new(scene)?;
     let warnings = limits::warnings(scene, &schedule, || critical_step_in(scene))?;
     let mut simulation = scene.build(schedule.dt)?;
-    let mut files = Vec::new();
+    let mut frames = Frames::new(scene, folder);
     let march = march(
         scene,
         simulation.as_mut(),
         &schedule,
         ENERGY_SAMPLES,
-        folder,
-        &mut files,
+        &mut frames,
         progress,
     )?;
     let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, march);
     summary.warnings = warnings;
     let (particles, liquid) = simulation.into_particles();
-    if let (ParticleOutput::Csv, Some(folder)) = (scene.output.particles, folder) {
-        files.push(particle_table(scene, &particles, &liquid).write_csv(folder, "particles.csv")?);
-    }
+    frames.write(None, schedule.end, &particles, &liquid)?;
     let exact = scene.exact(&particles, &schedule)?;
     summary.errors = ErrorNorms::all(&particles, &liquid, &exact);
     Ok(Outcome {
@@ -125,7 +124,7 @@ where
         particles,
         liquid,
         exact,
-        files,
+        files: frames.files,
     })
 }
 
@@ -162,16 +161,8 @@ where
 {
     let schedule = Schedule::new(scene)?;
     let mut simulation = scene.build(schedule.dt)?;
-    let mut files = Vec::new();
-    let march = march(
-        scene,
-        simulation.as_mut(),
-        &schedule,
-        1,
-        None,
-        &mut files,
-        &mut |_| {},
-    )?;
+    let mut frames = Frames::new(scene, None);
+    let march = march(scene, simulation.as_mut(), &schedule, 1, &mut frames, &mut |_| {})?;
     Ok(march.wall.as_secs_f64())
 }
 

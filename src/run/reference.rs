@@ -99,6 +99,7 @@ impl Problem {
                 let bar = LagrangianBar::vibrating_bar(length, density, velocity, law)?;
                 Ok(Box::new(bar.with_origin(self.origin)?))
             }
+            Law::InSpace(law) => Err(ReferenceError::UnknownLaw { law: law.name() }),
         }
     }
 
@@ -134,6 +135,7 @@ impl Problem {
                 let column = LagrangianBar::column(length, density, body_force, ramp, law)?;
                 Ok(Box::new(column.with_origin(origin)?))
             }
+            Law::InSpace(law) => Err(ReferenceError::UnknownLaw { law: law.name() }),
         }
     }
 }

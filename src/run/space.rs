@@ -4,17 +4,22 @@ use nalgebra::SVector;
 
 use super::dispatch::{Built, Start};
 use super::error::RunError;
+use super::history_law::HistoryLaw;
 use super::norms::Exact;
 use super::rate_law::{RateLaw, UniaxialRateLaw};
 use super::reference::{field_reference, solution};
 use super::schedule::Schedule;
 use super::state::{self, InitialState, Values, by_expressions};
+use crate::error::SetupError;
 use crate::grid::Grid;
-use crate::law::{Hill, LinearElastic, Logarithmic, Moduli, NeoHookean};
+use crate::law::{
+    ConeMatch, DruckerPrager, Hencky, Hill, LinearElastic, Logarithmic, Moduli, NeoHookean, NewtonianFluid,
+    StVenantKirchhoff, Strength, VonMises,
+};
 use crate::particles::Particles;
 use crate::reference::FieldReference;
 use crate::scalar::Scalar;
-use crate::scene::{Body, Law, ScalarKind, Scene};
+use crate::scene::{Body, Law, ScalarKind, Scene, SpaceLaw};
 
 /// A scene in `D` dimensions: implemented for those that there are.
 pub trait InSpace<const D: usize> {
@@ -86,7 +91,92 @@ fn uniaxial<T: Scalar>(start: Start<'_, 1>) -> Built<1> {
         Law::Hill { .. } => start.with_law(UniaxialRateLaw::Hill(Hill { moduli })),
         Law::Logarithmic { .. } => start.with_law(UniaxialRateLaw::Logarithmic(Logarithmic { moduli })),
         Law::NeoHookean { .. } => start.with_law(NeoHookean { moduli }),
+        Law::InSpace(law) => Err(RunError::NoSuchLaw {
+            law: law.name(),
+            dimension: 1,
+        }),
     }
+}
+
+/// A law with or without a history.
+enum AnyLaw {
+    Rate(RateLaw<f64>),
+    History(HistoryLaw<f64>),
+}
+
+fn law_in_space(law: Law) -> Result<AnyLaw, SetupError> {
+    let moduli = Moduli::from_young;
+    Ok(AnyLaw::History(match law {
+        Law::LinearElastic {
+            youngs_modulus,
+            poissons_ratio,
+        } => {
+            let moduli = moduli(youngs_modulus, poissons_ratio)?;
+            return Ok(AnyLaw::Rate(RateLaw::LinearElastic(LinearElastic { moduli })));
+        }
+        Law::Hill {
+            youngs_modulus,
+            poissons_ratio,
+        } => {
+            let moduli = moduli(youngs_modulus, poissons_ratio)?;
+            return Ok(AnyLaw::Rate(RateLaw::Hill(Hill { moduli })));
+        }
+        Law::NeoHookean {
+            youngs_modulus,
+            poissons_ratio,
+        } => HistoryLaw::NeoHookean(NeoHookean {
+            moduli: moduli(youngs_modulus, poissons_ratio)?,
+        }),
+        Law::Logarithmic {
+            youngs_modulus,
+            poissons_ratio,
+        } => HistoryLaw::Hencky(Hencky {
+            moduli: moduli(youngs_modulus, poissons_ratio)?,
+        }),
+        Law::InSpace(law) => in_space_only(law)?,
+    }))
+}
+
+fn in_space_only(law: SpaceLaw) -> Result<HistoryLaw<f64>, SetupError> {
+    let moduli = Moduli::from_young;
+    Ok(match law {
+        SpaceLaw::StVenantKirchhoff {
+            youngs_modulus,
+            poissons_ratio,
+        } => HistoryLaw::StVenantKirchhoff(StVenantKirchhoff {
+            moduli: moduli(youngs_modulus, poissons_ratio)?,
+        }),
+        SpaceLaw::VonMises {
+            youngs_modulus,
+            poissons_ratio,
+            yield_stress,
+            hardening,
+        } => HistoryLaw::VonMises(VonMises::new(
+            moduli(youngs_modulus, poissons_ratio)?,
+            yield_stress,
+            hardening,
+        )?),
+        SpaceLaw::DruckerPrager {
+            youngs_modulus,
+            poissons_ratio,
+            cohesion,
+            friction_angle,
+            dilation_angle,
+        } => {
+            let strength = Strength {
+                cohesion,
+                friction_angle: friction_angle.to_radians(),
+                dilation_angle: dilation_angle.to_radians(),
+            };
+            let moduli = moduli(youngs_modulus, poissons_ratio)?;
+            HistoryLaw::DruckerPrager(DruckerPrager::new(moduli, &strength, ConeMatch::PlaneStrain)?)
+        }
+        SpaceLaw::NewtonianFluid {
+            bulk_modulus,
+            gamma,
+            viscosity,
+        } => HistoryLaw::NewtonianFluid(NewtonianFluid::new(bulk_modulus, gamma, viscosity)?),
+    })
 }
 
 macro_rules! beyond_one_axis {
@@ -94,32 +184,9 @@ macro_rules! beyond_one_axis {
         impl InSpace<$dimension> for Scene {
             fn build(&self, dt: f64) -> Built<$dimension> {
                 let start = Start::new(self, dt)?;
-                match self.material.law {
-                    Law::LinearElastic {
-                        youngs_modulus,
-                        poissons_ratio,
-                    } => {
-                        let moduli = Moduli::from_young(youngs_modulus, poissons_ratio)?;
-                        start.with_law(RateLaw::LinearElastic(LinearElastic { moduli }))
-                    }
-                    Law::Hill {
-                        youngs_modulus,
-                        poissons_ratio,
-                    } => {
-                        let moduli = Moduli::from_young(youngs_modulus, poissons_ratio)?;
-                        start.with_law(RateLaw::Hill(Hill { moduli }))
-                    }
-                    Law::NeoHookean {
-                        youngs_modulus,
-                        poissons_ratio,
-                    } => {
-                        let moduli = Moduli::from_young(youngs_modulus, poissons_ratio)?;
-                        start.with_law::<f64, _>(NeoHookean { moduli })
-                    }
-                    law @ Law::Logarithmic { .. } => Err(RunError::NoSuchLaw {
-                        law: law.name(),
-                        dimension: $dimension,
-                    }),
+                match law_in_space(self.material.law)? {
+                    AnyLaw::Rate(law) => start.with_law::<f64, _>(law),
+                    AnyLaw::History(law) => start.with_law::<f64, _>(law),
                 }
             }
 

@@ -1,7 +1,7 @@
 //! Scenes that are compiled in.
 
 /// Names and texts; the first is the default.
-const SCENES: [(&str, &str); 10] = [
+const SCENES: [(&str, &str); 13] = [
     (
         "vibrating-bar-large",
         include_str!("../../examples/scenes/vibrating-bar-large.toml"),
@@ -42,6 +42,15 @@ const SCENES: [(&str, &str); 10] = [
         "standing-wave",
         include_str!("../../examples/scenes/standing-wave.toml"),
     ),
+    (
+        "manufactured",
+        include_str!("../../examples/scenes/manufactured.toml"),
+    ),
+    (
+        "granular-column",
+        include_str!("../../examples/scenes/granular-column.toml"),
+    ),
+    ("dam-break", include_str!("../../examples/scenes/dam-break.toml")),
 ];
 
 /// Text of the scene `name`.

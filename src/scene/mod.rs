@@ -26,7 +26,8 @@ pub use error::SceneError;
 pub use expression::{Expression, ExpressionError, ExpressionProblem};
 pub use spec::{
     Against, Body, Boundary, BoundaryKind, GridSpec, Initialise, Law, Material, Method, OutputSpec,
-    ParticleOutput, Phases, PoreBoundary, ReferenceSpec, ScalarKind, StepSize, StressSpec, TimeSpec,
+    ParticleOutput, Phases, PoreBoundary, ReferenceSpec, ScalarKind, SpaceLaw, StepSize, StressSpec,
+    TimeSpec,
 };
 
 use std::path::Path;

@@ -108,11 +108,72 @@ pub enum Law {
         /// Poisson's ratio, 0 in one dimension, which feels the modulus of uniaxial strain alone.
         poissons_ratio: f64,
     },
-    /// `logarithmic`, large strain: stress `E ln J`.
+    /// `logarithmic`, large strain: stress `E ln J` in one dimension, Hencky's law beyond.
     Logarithmic {
         /// Young's modulus of the undeformed material (Pa), positive.
         youngs_modulus: f64,
+        /// Poisson's ratio, 0 in one dimension.
+        poissons_ratio: f64,
     },
+    /// A law of two and three dimensions only, large strain.
+    InSpace(SpaceLaw),
+}
+
+/// A constitutive law of two and three dimensions with its constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpaceLaw {
+    /// `st-venant-kirchhoff`.
+    StVenantKirchhoff {
+        /// Young's modulus (Pa), positive.
+        youngs_modulus: f64,
+        /// Poisson's ratio.
+        poissons_ratio: f64,
+    },
+    /// `von-mises`, with linear isotropic hardening.
+    VonMises {
+        /// Young's modulus (Pa), positive.
+        youngs_modulus: f64,
+        /// Poisson's ratio.
+        poissons_ratio: f64,
+        /// Yield stress in uniaxial tension (Pa), positive.
+        yield_stress: f64,
+        /// Hardening modulus (Pa), not negative; default 0.
+        hardening: f64,
+    },
+    /// `drucker-prager`, matched to Mohr and Coulomb in plane strain.
+    DruckerPrager {
+        /// Young's modulus (Pa), positive.
+        youngs_modulus: f64,
+        /// Poisson's ratio.
+        poissons_ratio: f64,
+        /// Cohesion (Pa), not negative; default 0.
+        cohesion: f64,
+        /// Friction angle (degrees), 0 or more and below 90.
+        friction_angle: f64,
+        /// Dilation angle (degrees), 0 to the friction angle; default 0.
+        dilation_angle: f64,
+    },
+    /// `newtonian-fluid`, weakly compressible, which bears no tension.
+    NewtonianFluid {
+        /// Bulk modulus at rest (Pa), positive.
+        bulk_modulus: f64,
+        /// Exponent of the equation of state, at least 1; default 7.
+        gamma: f64,
+        /// Dynamic viscosity (Pa s), not negative.
+        viscosity: f64,
+    },
+}
+
+impl SpaceLaw {
+    /// Name in scenes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StVenantKirchhoff { .. } => "st-venant-kirchhoff",
+            Self::VonMises { .. } => "von-mises",
+            Self::DruckerPrager { .. } => "drucker-prager",
+            Self::NewtonianFluid { .. } => "newtonian-fluid",
+        }
+    }
 }
 
 impl Law {
@@ -122,6 +183,7 @@ impl Law {
             Self::LinearElastic { .. } | Self::Hill { .. } => "linear-elastic",
             Self::NeoHookean { .. } => "neo-hookean",
             Self::Logarithmic { .. } => "logarithmic",
+            Self::InSpace(law) => law.name(),
         }
     }
 
@@ -130,13 +192,22 @@ impl Law {
         !matches!(self, Self::LinearElastic { .. })
     }
 
-    /// Young's modulus (Pa).
+    /// Young's modulus (Pa); of a fluid, which has none, its bulk modulus.
     pub fn youngs_modulus(self) -> f64 {
         match self {
             Self::LinearElastic { youngs_modulus, .. }
             | Self::Hill { youngs_modulus, .. }
             | Self::NeoHookean { youngs_modulus, .. }
-            | Self::Logarithmic { youngs_modulus } => youngs_modulus,
+            | Self::Logarithmic { youngs_modulus, .. }
+            | Self::InSpace(
+                SpaceLaw::StVenantKirchhoff { youngs_modulus, .. }
+                | SpaceLaw::VonMises { youngs_modulus, .. }
+                | SpaceLaw::DruckerPrager { youngs_modulus, .. }
+                | SpaceLaw::NewtonianFluid {
+                    bulk_modulus: youngs_modulus,
+                    ..
+                },
+            ) => youngs_modulus,
         }
     }
 }
@@ -400,6 +471,8 @@ pub enum ParticleOutput {
     /// `particles.csv`.
     #[default]
     Csv,
+    /// `particles-000000.vtu`, ... from the start on, and their index `particles.pvd`, for ParaView.
+    Vtu,
     /// No file.
     None,
 }

@@ -6,7 +6,7 @@ use crate::phase::TwoPhase;
 use crate::reference::two_phase::{
     Consolidation, LagrangianSoil, SaturatedColumn, Soil, StandingWave, TwoPhaseReference, XieLeo,
 };
-use crate::reference::{Hill, Logarithmic, UniaxialLaw};
+use crate::reference::{Hill, Logarithmic, ReferenceError, UniaxialLaw};
 use crate::scene::{Law, Phases, ReferenceSpec, Scene};
 
 type Built = Result<Option<Box<dyn TwoPhaseReference>>, RunError>;
@@ -30,6 +30,7 @@ pub(super) fn solution(scene: &Scene, reference: ReferenceSpec, origin: f64, hei
                 Law::Hill { youngs_modulus, .. } => layer.large(Hill { youngs_modulus })?,
                 Law::NeoHookean { youngs_modulus, .. } => layer.large(neo_hookean(youngs_modulus))?,
                 Law::Logarithmic { youngs_modulus, .. } => layer.large(Logarithmic { youngs_modulus })?,
+                Law::InSpace(law) => return Err(ReferenceError::UnknownLaw { law: law.name() }.into()),
             })
         }
         ReferenceSpec::XieLeo { load } => {

@@ -149,7 +149,7 @@ fn static_column(scene: &Scene, body: &Body, body_force: f64) -> Result<(), Stri
     let (strain, youngs_modulus) = match scene.material.law {
         Law::LinearElastic { youngs_modulus, .. } => (Strain::Small, youngs_modulus),
         Law::Hill { youngs_modulus, .. } => (Strain::Large, youngs_modulus),
-        Law::NeoHookean { .. } | Law::Logarithmic { .. } => {
+        Law::NeoHookean { .. } | Law::Logarithmic { .. } | Law::InSpace(_) => {
             return Err(
                 "against = \"static\" knows linear-elastic only; expected against = \"dynamic\"".into(),
             );

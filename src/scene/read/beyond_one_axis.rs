@@ -1,7 +1,7 @@
 //! What scenes of two and three dimensions do not have in this version.
 
 use super::Section;
-use crate::scene::{Basis, Initialise, Law, Phases, ScalarKind, Scene, SceneError};
+use crate::scene::{Basis, Initialise, Phases, ScalarKind, Scene, SceneError};
 
 pub(super) fn check(root: &Section<'_>, scene: &Scene) -> Result<(), SceneError> {
     if scene.dimension() == 1 {
@@ -9,14 +9,6 @@ pub(super) fn check(root: &Section<'_>, scene: &Scene) -> Result<(), SceneError>
     }
     if let Phases::Two(_) = scene.material.phases {
         return Err(refuse(root, "material", "phases", "1 beyond one dimension")?);
-    }
-    if let Law::Logarithmic { .. } = scene.material.law {
-        return Err(refuse(
-            root,
-            "material",
-            "law",
-            "another law beyond one dimension",
-        )?);
     }
     if scene.method.scalar != ScalarKind::F64 {
         return Err(refuse(root, "method", "scalar", "\"f64\" beyond one dimension")?);

@@ -1,6 +1,6 @@
 //! `[material]`
 
-use super::{Item, Section};
+use super::{Section, law};
 use crate::phase::{Drag, TwoPhase};
 use crate::scene::{Law, Material, Phases, SceneError};
 
@@ -16,26 +16,11 @@ const TWO_PHASE_KEYS: [&str; 7] = [
     "drag",
 ];
 
-const LAW: &str = "one law, such as law.linear-elastic = { youngs_modulus = 4e4 }";
-
 #[derive(Clone, Copy, PartialEq)]
 enum Strain {
     Small,
     Large,
 }
-
-#[derive(Clone, Copy)]
-enum LawName {
-    LinearElastic,
-    NeoHookean,
-    Logarithmic,
-}
-
-const LAWS: [(&str, LawName); 3] = [
-    ("linear-elastic", LawName::LinearElastic),
-    ("neo-hookean", LawName::NeoHookean),
-    ("logarithmic", LawName::Logarithmic),
-];
 
 /// How many phases a scene has: which keys it may use elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,31 +75,26 @@ pub(super) fn read(
     phases.check(&section, &TWO_PHASE_KEYS)?;
     let strain_item = section.required("strain", "\"small\" or \"large\"")?;
     let strain = strain_item.choice(&[("small", Strain::Small), ("large", Strain::Large)], &[])?;
-    let law_item = section.required("law", LAW)?;
-    let (name, youngs_modulus, poissons_ratio) = law(&law_item, dimension)?;
+    let law = law::read(&section.required("law", law::EXPECTED)?, dimension)?;
     let phases = match phases {
         PhaseCount::One => one_phase(&section)?,
         PhaseCount::Two => two_phases(&section, gravity)?,
     };
-    let law = match (name, strain) {
-        (LawName::LinearElastic, Strain::Small) => Law::LinearElastic {
+    let law = match (law, strain) {
+        (
+            Law::Hill {
+                youngs_modulus,
+                poissons_ratio,
+            },
+            Strain::Small,
+        ) => Law::LinearElastic {
             youngs_modulus,
             poissons_ratio,
         },
-        (LawName::LinearElastic, Strain::Large) => Law::Hill {
-            youngs_modulus,
-            poissons_ratio,
-        },
-        (LawName::NeoHookean, Strain::Large) => Law::NeoHookean {
-            youngs_modulus,
-            poissons_ratio,
-        },
-        (LawName::Logarithmic, Strain::Large) => Law::Logarithmic { youngs_modulus },
-        (LawName::NeoHookean, Strain::Small) => {
-            return Err(strain_item.conflict("the law neo-hookean is of large strain; expected \"large\""));
-        }
-        (LawName::Logarithmic, Strain::Small) => {
-            return Err(strain_item.conflict("the law logarithmic is of large strain; expected \"large\""));
+        (law, Strain::Large) => law,
+        (law, Strain::Small) => {
+            let problem = format!("the law {} is of large strain; expected \"large\"", law.name());
+            return Err(strain_item.conflict(&problem));
         }
     };
     Ok(Material { phases, law })
@@ -158,47 +138,4 @@ fn two_phases(section: &Section<'_>, gravity: f64) -> Result<Phases, SceneError>
             None => Drag::default(),
         },
     }))
-}
-
-/// The one law in the table, its Young's modulus (Pa) and, beyond one dimension, Poisson's ratio.
-fn law(item: &Item<'_>, dimension: usize) -> Result<(LawName, f64, f64), SceneError> {
-    let section = item.section(LAW)?;
-    let names = LAWS.map(|law| law.0);
-    let section = section.allow(&names, &[])?;
-    if section.items().len() > 1 {
-        let problem = format!(
-            "these are several laws; expected exactly one of {}",
-            names.join(", ")
-        );
-        return Err(item.conflict(&problem));
-    }
-    for (name, law) in LAWS {
-        if let Some(constants) = section.optional(name) {
-            let constants = constants.section("a table, such as { youngs_modulus = 4e4 }")?;
-            let constants = constants.allow(&["youngs_modulus", "poissons_ratio"], &[])?;
-            let modulus = constants.required("youngs_modulus", "a positive number (Pa)")?;
-            return Ok((
-                law,
-                modulus.positive("Pa")?,
-                poissons_ratio(&constants, dimension)?,
-            ));
-        }
-    }
-    Err(section.missing(LAW))
-}
-
-/// One dimension feels the modulus of uniaxial strain alone, which scenes there call Young's.
-fn poissons_ratio(constants: &Section<'_>, dimension: usize) -> Result<f64, SceneError> {
-    let expected = "a number above -1 and below 0.5";
-    if dimension > 1 {
-        return constants
-            .required("poissons_ratio", expected)?
-            .number_where(expected, |ratio| ratio > -1.0 && ratio < 0.5);
-    }
-    match constants.optional("poissons_ratio") {
-        None => Ok(0.0),
-        Some(item) => Err(item.conflict(
-            "one dimension knows uniaxial strain only, and youngs_modulus is its modulus; leave it out",
-        )),
-    }
 }

@@ -6,6 +6,7 @@ mod body;
 mod boundary;
 mod grid;
 mod item;
+mod law;
 mod load;
 mod material;
 mod method;
@@ -59,7 +60,7 @@ pub(super) fn scene(table: &Table) -> Result<Scene, SceneError> {
         time,
         method,
     };
-    body::check_stress(&root, scene.material.law)?;
+    body::check_stress(&root, scene.material.law, scene.dimension())?;
     beyond_one_axis::check(&root, &scene)?;
     agreement::check(&scene)?;
     Ok(scene)

@@ -10,8 +10,12 @@ pub(super) fn read(root: &Section<'_>) -> Result<OutputSpec, SceneError> {
     };
     let section = section.allow(&["particles", "every", "checkpoint_every"], &[])?;
     if let Some(item) = section.optional("particles") {
-        let allowed = [("csv", ParticleOutput::Csv), ("none", ParticleOutput::None)];
-        output.particles = item.choice(&allowed, &["vtu"])?;
+        let allowed = [
+            ("csv", ParticleOutput::Csv),
+            ("vtu", ParticleOutput::Vtu),
+            ("none", ParticleOutput::None),
+        ];
+        output.particles = item.choice(&allowed, &[])?;
     }
     if let Some(item) = section.optional("every") {
         output.every = item.size(0, u64::MAX)?;

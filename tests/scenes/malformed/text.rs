@@ -61,6 +61,6 @@ pub(super) const NAMES: &[Case] = &[
     ("an unknown face", Set("boundary.0.face=bottom"), &["boundary.0.face = \"bottom\"", "\"x-min\", \"x-max\""]),
     ("a face of another dimension", Set("boundary.0.face=y-min"), &["= \"y-min\"", "\"x-min\", \"x-max\""]),
     ("an unknown reference", Set("reference={pendulum={}}"), &["reference.pendulum", "vibrating-bar, column-compaction"]),
-    ("an unknown output", Set("output.particles=json"), &["output.particles = \"json\"", "\"csv\", \"none\""]),
+    ("an unknown output", Set("output.particles=json"), &["output.particles = \"json\"", "\"csv\", \"vtu\", \"none\""]),
     ("an unknown start", Set("body.0.initialise=guess"), &["body.0.initialise = \"guess\"", "\"exact\", \"dofs\""]),
 ];

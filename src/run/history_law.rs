@@ -1,0 +1,116 @@
+//! The laws of two and three dimensions whose stress follows from what a particle remembers, chosen at run time.
+
+use nalgebra::SMatrix;
+
+use crate::law::{
+    ConstitutiveLaw, DeformationGradient, DruckerPrager, DruckerPragerState, ElasticStretch, Hencky,
+    NeoHookean, NewtonianFluid, StVenantKirchhoff, VolumeRatio, VonMises, VonMisesState,
+};
+use crate::scalar::Scalar;
+
+/// One of those laws. One type for all: another for each would multiply the steppers to compile, and they take seconds each.
+/// The price is memory: a particle has room for the longest history, in two dimensions at most four numbers more than its
+/// own.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum HistoryLaw<T> {
+    NeoHookean(NeoHookean<T>),
+    StVenantKirchhoff(StVenantKirchhoff<T>),
+    Hencky(Hencky<T>),
+    VonMises(VonMises<T>),
+    DruckerPrager(DruckerPrager<T>),
+    NewtonianFluid(NewtonianFluid<T>),
+}
+
+/// What a particle remembers: of its own law, or nothing yet.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) enum History<T, const D: usize> {
+    #[default]
+    None,
+    Gradient(DeformationGradient<T, D>),
+    Stretch(ElasticStretch<T, D>),
+    VonMises(VonMisesState<T, D>),
+    DruckerPrager(DruckerPragerState<T, D>),
+    Volume(VolumeRatio<T>),
+}
+
+/// Of each law of the enum its history. That of another law, which no particle has, counts as none.
+macro_rules! each_law {
+    ($($law:ident: $history:ident),+) => {
+        impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for HistoryLaw<T> {
+            type State = History<T, D>;
+
+            #[inline(always)]
+            fn large_strain(&self) -> bool {
+                true
+            }
+
+            #[inline(always)]
+            fn update(
+                &self,
+                increment: &SMatrix<T, D, D>,
+                stress: &mut SMatrix<T, D, D>,
+                state: &mut Self::State,
+            ) {
+                match self {
+                    $(Self::$law(law) => {
+                        let mut own = match state {
+                            History::$history(own) => *own,
+                            _ => Default::default(),
+                        };
+                        law.update(increment, stress, &mut own);
+                        *state = History::$history(own);
+                    })+
+                }
+            }
+
+            #[inline(always)]
+            fn update_over(
+                &self,
+                dt: T,
+                increment: &SMatrix<T, D, D>,
+                stress: &mut SMatrix<T, D, D>,
+                state: &mut Self::State,
+            ) {
+                match self {
+                    $(Self::$law(law) => {
+                        let mut own = match state {
+                            History::$history(own) => *own,
+                            _ => Default::default(),
+                        };
+                        law.update_over(dt, increment, stress, &mut own);
+                        *state = History::$history(own);
+                    })+
+                }
+            }
+
+            fn start(&self, stress: &SMatrix<T, D, D>, off_plane: Option<T>) -> Option<Self::State> {
+                match self {
+                    $(Self::$law(law) => law.start(stress, off_plane).map(History::$history),)+
+                }
+            }
+
+            fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
+                match (self, state) {
+                    $((Self::$law(law), History::$history(own)) => law.wave_speed(density, stress, own),)+
+                    $((Self::$law(law), _) => law.wave_speed(density, stress, &Default::default()),)+
+                }
+            }
+
+            fn energy_density(&self, stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
+                match (self, state) {
+                    $((Self::$law(law), History::$history(own)) => law.energy_density(stress, own),)+
+                    $((Self::$law(law), _) => law.energy_density(stress, &Default::default()),)+
+                }
+            }
+        }
+    };
+}
+
+each_law!(
+    NeoHookean: Gradient,
+    StVenantKirchhoff: Gradient,
+    Hencky: Stretch,
+    VonMises: VonMises,
+    DruckerPrager: DruckerPrager,
+    NewtonianFluid: Volume
+);

@@ -1,0 +1,14 @@
+//! Scenes in two and three dimensions.
+
+mod body;
+mod manufactured;
+mod walls;
+
+use materialpoint::scene::Scene;
+
+/// A scene with overrides.
+#[track_caller]
+pub fn scene(text: &str, set: &[&str]) -> Scene {
+    let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+    Scene::from_toml(text, &set).unwrap()
+}
