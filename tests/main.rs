@@ -8,6 +8,7 @@ mod convergence;
 mod examples;
 mod hard_cases;
 mod identities;
+mod laws;
 mod phase;
 mod scenes;
 mod two_phase;
