@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | [`BasisFamily`](basis::BasisFamily) | which DOFs a point sees | [`Linear`](basis::Linear), [`DualDomain`](basis::DualDomain), [`BSpline`](basis::BSpline) |
 //! | [`Reconstruction`](reconstruction::Reconstruction) | how particle data become integrals | [`Shepard`](reconstruction::Shepard), [`SubPoints`](reconstruction::SubPoints), [`Taylor`](reconstruction::Taylor), [`RelaxedTaylor`](reconstruction::RelaxedTaylor), [`CubicSpline`](reconstruction::CubicSpline) |
-//! | [`ConstitutiveLaw`](law::ConstitutiveLaw) | how stress follows strain | [`LinearElastic`](law::LinearElastic), [`Hill`](law::Hill), [`NeoHookean`](law::NeoHookean), [`Logarithmic`](law::Logarithmic) |
+//! | [`ConstitutiveLaw`](law::ConstitutiveLaw) | how stress follows strain | [`LinearElastic`](law::LinearElastic), [`Hill`](law::Hill), [`NeoHookean`](law::NeoHookean), [`StVenantKirchhoff`](law::StVenantKirchhoff), [`Hencky`](law::Hencky), [`Logarithmic`](law::Logarithmic), [`VonMises`](law::VonMises), [`DruckerPrager`](law::DruckerPrager), [`NewtonianFluid`](law::NewtonianFluid) |
 //! | [`Phase`](phase::Phase) | what shares the pores with the solid | [`OnePhase`](phase::OnePhase), [`TwoPhase`](phase::TwoPhase) |
 //!
 //! One [`Stepper`](stepper::Stepper) is generic over all four, over the [`Scalar`](scalar::Scalar) and over the dimension.

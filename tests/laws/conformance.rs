@@ -82,3 +82,23 @@ fn the_laws_keep_their_claims_in_single_precision() -> Result<(), Failure> {
     laws::<f32, 1>()?;
     laws::<f32, 2>()
 }
+
+/// Numbers per particle besides the stress, as `docs/laws.md` tells them.
+#[test]
+fn states_are_as_small_as_told() {
+    fn numbers<const D: usize, L: ConstitutiveLaw<f64, D>>(_: &L) -> usize {
+        size_of::<L::State>() / size_of::<f64>()
+    }
+    fn of<L: ConstitutiveLaw<f64, 1> + ConstitutiveLaw<f64, 2> + ConstitutiveLaw<f64, 3>>(
+        law: &L,
+    ) -> [usize; 3] {
+        [numbers::<1, L>(law), numbers::<2, L>(law), numbers::<3, L>(law)]
+    }
+    let moduli = Moduli::from_young(1.0, 0.3).unwrap();
+    let (metal, soil) = plastic(moduli, 0.1);
+    assert_eq!(of(&StVenantKirchhoff { moduli }), [1, 4, 9]);
+    assert_eq!(of(&Hencky { moduli }), [2, 5, 10]);
+    assert_eq!(of(&metal), [3, 6, 11]);
+    assert_eq!(of(&soil), [5, 8, 13]);
+    assert_eq!(of(&NewtonianFluid::new(1.0, 7.0, 0.0).unwrap()), [1, 1, 1]);
+}

@@ -141,6 +141,18 @@ fn the_gap_closes_before_anything_is_borne() {
     assert!((specimen.stress.trace() / 3.0 + pressure).abs() < 1e-9 * pressure);
 }
 
+/// Of the closing step the part in contact counts, in shear too: the material is as if it had been pressed by that part alone.
+#[test]
+fn closing_in_one_step_forgets_the_shear_of_the_gap() {
+    let law = law(0.0, 0.3, ConeMatch::PlaneStrain);
+    let (mut opened, mut pressed) = (Specimen::<2, _>::new(&law), Specimen::<2, _>::new(&law));
+    opened.stretch([0.03, 0.0], 1);
+    opened.stretch([-0.033, 0.0], 1);
+    pressed.stretch([-0.003, 0.0], 1);
+    assert!(pressed.stress[0] < -1e4);
+    assert!((opened.stress - pressed.stress).norm() < 1e-12 * moduli().p_wave());
+}
+
 #[test]
 fn plane_strain_is_three_dimensions_without_strain_off_the_plane() {
     for (cohesion, dilation) in [(0.0, 0.3), (2e4, 0.1)] {
@@ -191,6 +203,7 @@ fn what_is_not_a_number_stays_so() {
     let mut specimen = Specimen::<2, _>::new(&law);
     specimen.update(&SMatrix::from_element(f64::NAN));
     assert!(specimen.stress.iter().all(|s| s.is_nan()));
+    assert_eq!((specimen.state.plastic_strain, specimen.state.gap), (0.0, 0.0));
     let energy = law.energy_density(&specimen.stress, &specimen.state);
     assert!(energy.is_nan());
 }

@@ -176,6 +176,9 @@ fn particles_take_their_states_from_their_stresses() {
     for stress in &stepper.particles().stress {
         assert!((stress - told).norm() < 1e-3, "{stress}");
     }
+    for state in &stepper.particles().state {
+        assert!((stepper.law().off_plane_stress(state) + 5e3).abs() < 1e-3);
+    }
     let mut particles = Particles::<_, 2, _, ()>::at_rest(&points, 2e3);
     particles.stress[3] = Matrix2::identity() * 1e3;
     let refused = particles.start_under_stress(&law, |_, _| None);

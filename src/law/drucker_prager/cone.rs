@@ -15,7 +15,7 @@ pub struct Strength<T> {
     pub cohesion: T,
     /// Friction angle (rad).
     pub friction_angle: T,
-    /// Dilation angle (rad); equal to the friction angle the flow is associated.
+    /// Dilation angle (rad); the flow is associated where it equals the friction angle.
     pub dilation_angle: T,
 }
 
@@ -25,7 +25,7 @@ pub struct Strength<T> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConeMatch {
     /// The strength of plane strain at collapse. For associated flow `eta = 3 s / sqrt(9 + 3 s^2)` (Drucker & Prager 1952); otherwise
-    /// the cone depends on the dilation too, since that decides the stress along the strained-less axis. The dilation
+    /// the cone depends on the dilation too, which decides the stress along the axis that is not strained. The dilation
     /// angle is that of plane strain, `sin(psi) = tr(d) / |d_1 - d_2|`.
     PlaneStrain,
     /// The outer edges, triaxial compression: circumscribed, `eta = 6 s / (sqrt(3) (3 - s))`.
