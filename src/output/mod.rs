@@ -1,9 +1,10 @@
 //! What a run leaves on disk: tables as CSV, particles as VTK files with their index, pictures as SVG.
 //!
 //! [`Folder`] is checked before anything is computed, and a file in it is complete or absent. Pictures are
-//! returned as text, drawn from four primitives; a plotting crate would place them on whole pixels and bring
+//! returned as text, drawn from a few primitives; a plotting crate would place them on whole pixels and bring
 //! neither dashes nor haloes. Colours are those of Okabe and Ito, and every distinction that a colour makes is
-//! made again by a marker, its filling or a dash, so that a grey print tells the same.
+//! made again by a marker, its filling or a dash, so that a grey print tells the same. Maps take viridis, which
+//! brightens evenly.
 
 mod error;
 mod fields;
@@ -12,6 +13,7 @@ mod frame;
 mod grid_of_fields;
 mod labels;
 mod legend;
+mod map;
 mod page;
 mod panel;
 mod pvd;
@@ -29,6 +31,7 @@ pub use error::OutputError;
 pub use fields::draw_fields;
 pub use folder::Folder;
 pub use grid_of_fields::draw_grid_of_fields;
+pub use map::{MapPanel, StripFrame, draw_maps, draw_strip};
 pub use page::{PageError, fill_in};
 pub use panel::FieldPanel;
 pub use pvd::{Series, SeriesFrame};
