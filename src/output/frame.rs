@@ -77,8 +77,15 @@ impl Frame {
         }
     }
 
+    /// A label that would touch the one before is left out.
     fn x_labels(&self, canvas: &mut Canvas, ticks: &Ticks) {
+        let mut free = f64::NEG_INFINITY;
         for (fraction, label) in &ticks.labelled {
+            let (middle, half) = (fraction * self.width, 0.5 * text::width(label, TICK));
+            if middle - half < free {
+                continue;
+            }
+            free = middle + half + 2.0;
             let at = (
                 self.left + fraction * self.width,
                 self.bottom() + GAP + 0.8 * TICK,
@@ -87,8 +94,14 @@ impl Frame {
         }
     }
 
+    /// A label that would touch the one below is left out.
     fn y_labels(&self, canvas: &mut Canvas, ticks: &Ticks) {
+        let mut free = f64::NEG_INFINITY;
         for (fraction, label) in &ticks.labelled {
+            if fraction * self.height < free {
+                continue;
+            }
+            free = fraction * self.height + TICK;
             let at = (
                 self.left - GAP,
                 self.bottom() - fraction * self.height + 0.35 * TICK,

@@ -1,9 +1,10 @@
 //! What a run leaves on disk: tables as CSV, particles as VTK files with their index, pictures as SVG.
 //!
 //! [`Folder`] is checked before anything is computed, and a file in it is complete or absent. Pictures are
-//! returned as text, drawn from four primitives; a plotting crate would place them on whole pixels and bring
+//! returned as text, drawn from a few primitives; a plotting crate would place them on whole pixels and bring
 //! neither dashes nor haloes. Colours are those of Okabe and Ito, and every distinction that a colour makes is
-//! made again by a marker, its filling or a dash, so that a grey print tells the same.
+//! made again by a marker, its filling or a dash, so that a grey print tells the same. Maps take viridis, which
+//! brightens evenly.
 
 mod error;
 mod fields;
@@ -13,6 +14,7 @@ mod grid_of_fields;
 mod labels;
 mod legend;
 mod lines;
+mod map;
 mod page;
 mod panel;
 mod pvd;
@@ -31,6 +33,7 @@ pub use fields::draw_fields;
 pub use folder::Folder;
 pub use grid_of_fields::draw_grid_of_fields;
 pub use lines::{Line, LineAxis, LineCaptions, LinePanel, draw_lines};
+pub use map::{MapPanel, StripFrame, draw_maps, draw_strip};
 pub use page::{PageError, fill_in};
 pub use panel::FieldPanel;
 pub use pvd::{Series, SeriesFrame};

@@ -1,4 +1,4 @@
-//! An SVG picture, built from four primitives: line, polygon, circle and text.
+//! An SVG picture, built from a few primitives: lines, polygons, discs, rectangles and text.
 
 use super::style::FONT;
 use super::text::escape;
@@ -138,6 +138,24 @@ impl Canvas {
             self.add(&format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>"));
         }
         self.add("</g>");
+    }
+
+    /// Many small discs of one colour, as ends of lines without length: a third of the text that circles take.
+    pub fn dots(&mut self, centres: &[Point], radius: f64, colour: &str) {
+        let path: String = centres.iter().map(|(x, y)| format!("M{x:.1} {y:.1}h0")).collect();
+        let width = 2.0 * radius;
+        self.add(&format!(
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width:.1}\" stroke-linecap=\"round\"/>"
+        ));
+    }
+
+    /// Many rectangles of one colour, upper left corner and size (px); neighbours meet without a seam.
+    pub fn tiles(&mut self, tiles: &[(Point, Point)], colour: &str) {
+        let tile = |((x, y), (w, h)): &(Point, Point)| format!("M{x:.2} {y:.2}h{w:.2}v{h:.2}h-{w:.2}z");
+        let path: String = tiles.iter().map(tile).collect();
+        self.add(&format!(
+            "<path d=\"{path}\" fill=\"{colour}\" shape-rendering=\"crispEdges\"/>"
+        ));
     }
 
     /// A line of text.

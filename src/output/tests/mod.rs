@@ -2,6 +2,7 @@
 
 mod files;
 mod full_disk;
+mod maps;
 mod pictures;
 mod scratch;
 mod series;

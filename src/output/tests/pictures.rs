@@ -6,7 +6,7 @@ use crate::output::{
 };
 
 /// Parses a picture: tags balance, every number is a number, no markup leaks from texts.
-fn check(svg: &str) {
+pub(super) fn check(svg: &str) {
     let mut open: Vec<&str> = Vec::new();
     for tag in svg.split('<').skip(1) {
         let (tag, text) = tag
