@@ -44,11 +44,20 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
                 "strain = \"small\": Hooke; strain = \"large\": Hill's rate",
             ),
             ("neo-hookean", "strain = \"large\": compressible neo-Hookean"),
-            ("logarithmic", "strain = \"large\": stress E ln J; Hencky beyond 1-D"),
+            (
+                "logarithmic",
+                "strain = \"large\": stress E ln J; Hencky beyond 1-D",
+            ),
             ("st-venant-kirchhoff", "strain = \"large\", 2-D and 3-D"),
             ("von-mises", "strain = \"large\", hardening, 2-D and 3-D"),
-            ("drucker-prager", "strain = \"large\", cohesion, dilation, 2-D and 3-D"),
-            ("newtonian-fluid", "strain = \"large\", weakly compressible, 2-D and 3-D"),
+            (
+                "drucker-prager",
+                "strain = \"large\", cohesion, dilation, 2-D and 3-D",
+            ),
+            (
+                "newtonian-fluid",
+                "strain = \"large\", weakly compressible, 2-D and 3-D",
+            ),
         ],
     ),
     (

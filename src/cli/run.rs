@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use materialpoint::output::Folder;
 use materialpoint::run::{InSpace, Progress, Summary, run, run_in};
 use materialpoint::scene::{Scene, SceneError};
-use materialpoint::study::write_fields;
+use materialpoint::study::{write_fields, write_maps};
 
 use super::Shared;
 use super::bar::bar;
@@ -55,7 +55,8 @@ fn in_space<const D: usize>(scene: &Scene, folder: &Folder, progress: &mut dyn F
 where
     Scene: InSpace<D>,
 {
-    let outcome = run_in::<D>(scene, Some(folder), progress)?;
+    let mut outcome = run_in::<D>(scene, Some(folder), progress)?;
+    outcome.files.push(write_maps(scene, &outcome, folder)?);
     Ok((outcome.summary, outcome.files))
 }
 

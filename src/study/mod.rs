@@ -1,9 +1,11 @@
 //! Speed against error: methods x resolutions on one scene.
 
 mod front;
+mod maps;
 mod report;
 mod timing;
 
+pub use maps::write_maps;
 pub use report::{front_in_markdown, picture, recommendation, write_fields, write_files};
 
 use std::collections::BTreeMap;
