@@ -21,9 +21,9 @@ use body::{Body, Order, POISSON, YOUNG, walls};
 use counts::Counts;
 use yardstick::Plain;
 
-const SAMPLES: usize = 7;
+const SAMPLES: usize = 21;
 /// Particle-steps of a sample.
-const WORK: usize = 3_000_000;
+const WORK: usize = 300_000;
 
 /// Something that steps.
 struct Case {
@@ -134,7 +134,7 @@ fn space(particles: usize) -> Vec<Case> {
 
 /// Small: the banded matrix takes the square of a row of cells for each DOF.
 fn relaxed() -> Vec<Case> {
-    let body = Body::of::<2>(10_000, Order::Cells);
+    let body = Body::of::<2>(2_500, Order::Cells);
     case("relaxed tls", body, None, || {
         body.simulation::<2, _, _>(
             RelaxedTaylor::<f64, 2, 6>::for_degree(2),

@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Stepper;
+use super::lanes::{self, Motion, Pass};
 use super::spans::{Fault, Flaw, Moved};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
@@ -34,6 +35,15 @@ where
             PerSpan(&mut self.spans.moved),
         );
         each_span(parallel, PARTICLES, work, &|first, (particles, cells, found)| {
+            if const { lanes::apply::<T, D, B>() } {
+                let motion = Motion {
+                    velocity,
+                    dt,
+                    law,
+                    phase,
+                };
+                return found.set(Pass::new(basis, grid).advance(&motion, first, particles, cells));
+            }
             let mut crossings = 0;
             let moved = particles
                 .each()

@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::cell_sums::CellSums;
+use super::lanes::{self, Bodies, Pass};
 use super::spans::{Spans, share};
 use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
@@ -68,6 +69,25 @@ where
         )| {
             let ((first, mass), (_, force)) = (mass.one(), force.one());
             let force = &mut force[..mass.len()];
+            if const { lanes::apply::<T, D, B>() } {
+                let bodies_at = Bodies {
+                    positions,
+                    cells,
+                    masses: bodies.0,
+                };
+                let stress = |p: usize| {
+                    if P::COUPLED {
+                        phase.total_stress(&stresses.0[p], &stresses.1[p])
+                    } else {
+                        stresses.0[p]
+                    }
+                };
+                let mut sink = |i: usize, m, f| {
+                    mass[i - first] += m;
+                    force[i - first] -= f;
+                };
+                return Pass::new(basis, grid).sum_masses_and_forces(bodies_at, bodies.1, &stress, &mut sink);
+            }
             let mut sums = CellSums::new(basis, grid);
             let mut sink = |i: usize, Pair(m, f)| {
                 mass[i - first] += m;
@@ -133,8 +153,16 @@ where
         );
         each_span(parallel, span, work, &|_, (positions, cells, masses, mass)| {
             let (first, mass) = mass.one();
-            let mut sums = CellSums::new(basis, grid);
             let mut sink = |i: usize, m| mass[i - first] += m;
+            if const { lanes::apply::<T, D, B>() } {
+                let bodies = Bodies {
+                    positions,
+                    cells,
+                    masses,
+                };
+                return Pass::new(basis, grid).sum_masses(bodies, &mut sink);
+            }
+            let mut sums = CellSums::new(basis, grid);
             for ((x, cell), &m) in positions.iter().zip(cells).zip(masses) {
                 sums.add(cell, x, |phi, _| m * phi, &mut sink);
             }

@@ -20,6 +20,7 @@ mod critical;
 mod diagnostics;
 mod forces;
 mod forcing;
+mod lanes;
 mod liquid;
 mod matrix;
 mod simulation;

@@ -26,10 +26,19 @@ pub(super) struct Spans<T, const D: usize> {
 }
 
 /// What became of the particles of a span that moved.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Moved<T> {
     pub(super) crossings: usize,
     pub(super) fault: Option<Fault<T>>,
+}
+
+impl<T> Default for Moved<T> {
+    fn default() -> Self {
+        Self {
+            crossings: 0,
+            fault: None,
+        }
+    }
 }
 
 /// What can go wrong with a particle that moves.
@@ -81,13 +90,7 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             vectors: Vec::new(),
             matrices: Vec::new(),
             sums: vec![Sums::zero(); spans],
-            moved: vec![
-                Moved {
-                    crossings: 0,
-                    fault: None
-                };
-                spans
-            ],
+            moved: vec![Moved::default(); spans],
         }
     }
 

@@ -5,6 +5,7 @@ use nalgebra::SVector;
 use super::acceleration::Walls;
 use super::cell_sums::CellSums;
 use super::diagnostics::Sums;
+use super::lanes::{self, Acceleration, Bodies, Pass};
 use super::matrix::Unknown;
 use super::spans::{Spans, share};
 use super::{Dofs, Forcing, Stepper, cloud};
@@ -65,6 +66,19 @@ where
             cells,
             found,
         )| {
+            if const { lanes::apply::<T, D, B>() } {
+                let bodies = Bodies {
+                    positions,
+                    cells,
+                    masses,
+                };
+                let acceleration = Acceleration {
+                    dofs: acceleration,
+                    dt,
+                };
+                let pass = Pass::new(basis, grid);
+                return found.set(pass.accelerate::<false>(bodies, velocities, acceleration, &mut |_, _| ()));
+            }
             let mut sums = Sums::zero();
             let bodies = velocities.iter_mut().zip(masses);
             for ((x, cell), (velocity, &mass)) in positions.iter().zip(cells).zip(bodies) {
@@ -109,10 +123,23 @@ where
             momentum,
             found,
         )| {
-            let mut sums = Sums::zero();
             let (first, momentum) = momentum.one();
-            let mut momenta = CellSums::new(basis, grid);
             let mut sink = |i: usize, q| momentum[i - first] += q;
+            if const { lanes::apply::<T, D, B>() } {
+                let bodies = Bodies {
+                    positions,
+                    cells,
+                    masses,
+                };
+                let acceleration = Acceleration {
+                    dofs: acceleration,
+                    dt,
+                };
+                let pass = Pass::new(basis, grid);
+                return found.set(pass.accelerate::<true>(bodies, velocities, acceleration, &mut sink));
+            }
+            let mut sums = Sums::zero();
+            let mut momenta = CellSums::new(basis, grid);
             let bodies = velocities.iter_mut().zip(masses);
             for ((x, cell), (velocity, &mass)) in positions.iter().zip(cells).zip(bodies) {
                 let mut a = SVector::zeros();
