@@ -22,17 +22,15 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         (0..D).map(|axis| cell[axis] as usize * self.strides[axis]).sum()
     }
 
-    /// Calls `f(row, offset, k)` for each row: its number, the first of its DOFs after the cell's first, its place along the
-    /// axes 1 and 2.
+    /// Number of rows.
+    pub(super) const ROWS: usize = B::WIDTH.pow(D as u32 - 1);
+
+    /// Of a row the first DOF after the cell's first, and its place along the axes 1 and 2.
     #[inline(always)]
-    pub(super) fn each_row(&self, mut f: impl FnMut(usize, usize, [usize; 2])) {
-        let deep = if D == 3 { B::WIDTH } else { 1 };
-        for k2 in 0..deep {
-            for k1 in 0..B::WIDTH {
-                let deeper = if D == 3 { k2 * self.strides[D - 1] } else { 0 };
-                f(k2 * B::WIDTH + k1, deeper + k1 * self.strides[1], [k1, k2]);
-            }
-        }
+    pub(super) fn row(&self, row: usize) -> (usize, [usize; 2]) {
+        let (k1, k2) = (row % B::WIDTH, row / B::WIDTH);
+        let deeper = if D == 3 { k2 * self.strides[D - 1] } else { 0 };
+        (deeper + k1 * self.strides[1], [k1, k2])
     }
 
     /// Products of the factors across the row at `k`.
@@ -62,17 +60,18 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         dofs: &[SVector<T, D>],
     ) -> [V; D] {
         let mut result = [V::splat(T::zero()); D];
-        self.each_row(|_, offset, k| {
+        for row in 0..Self::ROWS {
+            let (offset, k) = self.row(row);
             let across = Self::across(factors, k);
-            let row = &dofs[first + offset..first + offset + B::WIDTH];
+            let dofs = &dofs[first + offset..first + offset + B::WIDTH];
             for c in 0..D {
-                let mut sum = factors.value[0][0] * V::splat(row[0][c]);
+                let mut sum = factors.value[0][0] * V::splat(dofs[0][c]);
                 for i in 1..B::WIDTH {
-                    sum = factors.value[0][i].mul_add(V::splat(row[i][c]), sum);
+                    sum = factors.value[0][i].mul_add(V::splat(dofs[i][c]), sum);
                 }
                 result[c] = sum.mul_add(across.value, result[c]);
             }
-        });
+        }
         result
     }
 
@@ -86,14 +85,15 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     ) -> ([V; D], [[V; D]; D]) {
         let zero = V::splat(T::zero());
         let (mut value, mut slopes) = ([zero; D], [[zero; D]; D]);
-        self.each_row(|_, offset, k| {
+        for row in 0..Self::ROWS {
+            let (offset, k) = self.row(row);
             let across = Self::across(factors, k);
-            let row = &dofs[first + offset..first + offset + B::WIDTH];
+            let dofs = &dofs[first + offset..first + offset + B::WIDTH];
             for c in 0..D {
-                let dof = V::splat(row[0][c]);
+                let dof = V::splat(dofs[0][c]);
                 let (mut sum, mut slope) = (factors.value[0][0] * dof, factors.slope[0][0] * dof);
                 for i in 1..B::WIDTH {
-                    let dof = V::splat(row[i][c]);
+                    let dof = V::splat(dofs[i][c]);
                     sum = factors.value[0][i].mul_add(dof, sum);
                     slope = factors.slope[0][i].mul_add(dof, slope);
                 }
@@ -103,7 +103,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
                     slopes[c][a] = sum.mul_add(across.slope[a - 1], slopes[c][a]);
                 }
             }
-        });
+        }
         (value, slopes)
     }
 }

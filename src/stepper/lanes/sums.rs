@@ -80,7 +80,8 @@ impl<V: Copy, const D: usize> Sums<V, D> {
         V: Lanes<T>,
     {
         let zero = V::splat(T::zero());
-        pass.each_row(|row, _, k| {
+        for row in 0..Pass::<T, D, B>::ROWS {
+            let (_, k) = pass.row(row);
             let across = Pass::<T, D, B>::across(factors, k);
             let scalar = parts.scalar.map(|m| m * across.value);
             let vector = parts.vector.map(|q| q.map(|q| q * across.value));
@@ -114,7 +115,7 @@ impl<V: Copy, const D: usize> Sums<V, D> {
                     self.vector[place][c] = sum;
                 }
             }
-        });
+        }
     }
 
     /// Hands all sums over and starts again.
@@ -154,7 +155,8 @@ impl<V: Copy, const D: usize> Sums<V, D> {
         let Some(cell) = self.cell else { return };
         let first = pass.first_dof(&cell) + column;
         let zero = V::splat(T::zero());
-        pass.each_row(|row, offset, _| {
+        for row in 0..Pass::<T, D, B>::ROWS {
+            let (offset, _) = pass.row(row);
             let place = row * B::WIDTH + column;
             let vector = self.vector[place];
             let scalar = if scalars { self.scalar[place] } else { zero };
@@ -165,7 +167,7 @@ impl<V: Copy, const D: usize> Sums<V, D> {
             });
             let sums = V::sums(packs);
             sink(first + offset, sums[3], SVector::from_fn(|c, _| sums[c]));
-        });
+        }
     }
 }
 
