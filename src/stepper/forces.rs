@@ -9,7 +9,7 @@ use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::law::ConstitutiveLaw;
-use crate::parallel::{CELLS, PARTICLES, Windows, add_up, each_span};
+use crate::parallel::{Windows, add_up, each_span};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Point, Reconstruction};
 use crate::scalar::Scalar;
@@ -45,11 +45,12 @@ where
         let (basis, grid, phase, particles) = (&self.basis, &self.grid, &self.phase, &self.particles);
         let Spans {
             particles: spans,
+            lengths,
             scalars,
             vectors,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, particles.len(), PARTICLES);
+        let (span, parallel) = share(spans, particles.len(), lengths[0]);
         let work = (
             &particles.position[..],
             self.bins.cells(),
@@ -141,10 +142,11 @@ where
         let (basis, grid, particles) = (&self.basis, &self.grid, &self.particles);
         let Spans {
             particles: spans,
+            lengths,
             scalars,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, particles.len(), PARTICLES);
+        let (span, parallel) = share(spans, particles.len(), lengths[0]);
         let work = (
             &particles.position[..],
             self.bins.cells(),
@@ -240,10 +242,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
         let occupied = cloud.bins.occupied();
         let Spans {
             cells: spans,
+            lengths,
             vectors,
             ..
         } = self.spans;
-        let (span, parallel) = share(spans, occupied.len(), CELLS);
+        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
         let work = (occupied, Windows::new(spans, vectors, self.force, 1));
         each_span(parallel, span, work, &|place, (cells, force)| {
             let (first, force) = force.one();

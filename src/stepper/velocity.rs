@@ -14,7 +14,7 @@ use crate::field::MassMomentum;
 use crate::grid::Grid;
 use crate::law::ConstitutiveLaw;
 use crate::mass::{VelocityMass, banded_row};
-use crate::parallel::{CELLS, PARTICLES, PerSpan, Windows, add_up, each_span, many_threads};
+use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, many_threads};
 use crate::phase::Phase;
 use crate::reconstruction::{Point, Reconstruction};
 use crate::scalar::Scalar;
@@ -100,11 +100,12 @@ where
         let particles = &mut self.particles;
         let Spans {
             particles: spans,
+            lengths,
             vectors,
             sums,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, particles.len(), PARTICLES);
+        let (span, parallel) = share(spans, particles.len(), lengths[0]);
         sums.fill(Sums::zero());
         let work = (
             &particles.position[..],
@@ -269,11 +270,12 @@ where
         let occupied = self.bins.occupied();
         let Spans {
             cells: spans,
+            lengths,
             matrices,
             vectors,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, occupied.len(), CELLS);
+        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
         let work = (
             occupied,
             Windows::new(spans, matrices, mass, width),

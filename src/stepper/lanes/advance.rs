@@ -25,14 +25,15 @@ pub(in super::super) struct Motion<'a, T, const D: usize, L, P> {
 type Increments<T, const D: usize> = [(SVector<T, D>, SMatrix<T, D, D>); LANES];
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
-    /// Moves and deforms the particles, the first of which has the number `first`.
+    /// Moves and deforms the particles, the first of which has the number `first`; returns also the lowest and the highest
+    /// number of a cell that they are then in.
     pub(in super::super) fn advance<L: ConstitutiveLaw<T, D>, P: Phase<T, D>>(
         &self,
         motion: &Motion<'_, T, D, L, P>,
         first: usize,
         particles: Movables<'_, T, D, L::State, P::Particle>,
         cells: &mut [Cell<D>],
-    ) -> Moved<T> {
+    ) -> (Moved<T>, [u32; 2]) {
         with_lanes_of!(T, self.advance_in[_, _](motion, first, particles, cells))
     }
 
@@ -43,12 +44,18 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         first: usize,
         mut particles: Movables<'_, T, D, L::State, P::Particle>,
         cells: &mut [Cell<D>],
-    ) -> Moved<T> {
+    ) -> (Moved<T>, [u32; 2]) {
         let mut moved = Moved::default();
+        let mut bounds = [u32::MAX, 0];
+        let mut bound = |cell: &Cell<D>| {
+            let number = self.grid.linear(cell) as u32;
+            bounds = [bounds[0].min(number), bounds[1].max(number)];
+        };
         let mut p = 0;
         while p < cells.len() && moved.fault.is_none() {
             let group = Group::at(p, cells);
             let x = group.vectors::<T, V, D>(particles.positions());
+            bound(&cells[p]);
             let increments = self.increments(motion, &cells[p], &x);
             for l in 0..group.count {
                 let (path, increment) = &increments[l];
@@ -61,7 +68,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
                     break;
                 }
                 match settle(self.grid, &mut cells[p + l], particle.position) {
-                    Some(crossed) => moved.crossings += usize::from(crossed),
+                    Some(false) => {}
+                    Some(true) => {
+                        moved.crossings += 1;
+                        bound(&cells[p + l]);
+                    }
                     None => {
                         moved.fault = Some(Fault::Left(first + p + l));
                         break;
@@ -70,7 +81,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
             }
             p += group.count;
         }
-        moved
+        (moved, bounds)
     }
 
     #[inline(always)]
