@@ -65,6 +65,7 @@ pub mod basis;
 pub mod error;
 pub mod field;
 pub mod grid;
+pub mod lanes;
 pub mod law;
 pub mod mass;
 pub mod method;

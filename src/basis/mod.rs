@@ -13,13 +13,14 @@ pub use bspline::BSpline;
 pub use dual_domain::DualDomain;
 pub use interpolant::Interpolant;
 pub use linear::Linear;
-pub use tensor::{AxisFamily, Row};
+pub use tensor::{AxisFamily, Factors, Row};
 
 use std::ops::Range;
 
 use nalgebra::SVector;
 
 use crate::grid::{Cell, Face, Grid, Side};
+use crate::lanes::Lanes;
 use crate::particles::Bins;
 use crate::scalar::Scalar;
 
@@ -41,6 +42,23 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     /// Bytes allocated, for the user's information.
     fn bytes(&self) -> usize {
         0
+    }
+
+    /// Number of functions along each axis of a cell, if a cell's functions are the products of [`BasisFamily::factors`]: those
+    /// of DOFs that follow each other along every axis, from the cell's own index on. Zero if they are not, or nobody has said
+    /// so; four points of a cell are then not computed at once.
+    const WIDTH: usize = 0;
+
+    /// The functions of `cell` at several of its points, whose coordinates from 0 to 1 in the cell are `unit`. Only asked where
+    /// [`BasisFamily::WIDTH`] is not zero.
+    #[inline(always)]
+    fn factors<V: Lanes<T>>(&self, _grid: &Grid<T, D>, _cell: &Cell<D>, unit: &[V; D]) -> Factors<V, D> {
+        let nothing = [unit.map(|unit| unit - unit); tensor::MOST_WIDTH];
+        let nothing = std::array::from_fn(|axis| std::array::from_fn(|k| nothing[k][axis]));
+        Factors {
+            value: nothing,
+            slope: nothing,
+        }
     }
 
     /// Polynomial degree of the values: what they can reproduce, and how far apart along an axis two DOFs

@@ -6,7 +6,21 @@ use nalgebra::SVector;
 
 use super::BasisFamily;
 use crate::grid::{Cell, Grid};
+use crate::lanes::{LANES, Lanes};
 use crate::scalar::Scalar;
+
+/// Most functions along an axis of a cell that can be computed for several points at once.
+pub const MOST_WIDTH: usize = 4;
+
+/// Values and slopes (by the coordinate in cell sizes) of a cell's functions along each axis, at several points of the cell:
+/// the factors of which the functions are products. Entries beyond the family's width mean nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Factors<V, const D: usize> {
+    /// Values of each axis's functions.
+    pub value: [[V; MOST_WIDTH]; D],
+    /// Their derivatives.
+    pub slope: [[V; MOST_WIDTH]; D],
+}
 
 /// The `W` DOFs that one point of an axis sees.
 #[derive(Clone, Copy, Debug)]
@@ -28,12 +42,65 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
     /// than `W` functions exist, the spare entries repeat a DOF with zero value and slope.
     fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, W>;
 
+    /// Whether the DOFs of cell `i` are `i, i + 1, ... i + W - 1` everywhere. Then, in two and three dimensions, a step computes
+    /// with four particles of a cell at once.
+    const CONSECUTIVE: bool = false;
+
+    /// Values and slopes of [`AxisFamily::row`] at several points of a cell; only asked where [`AxisFamily::CONSECUTIVE`].
+    /// Unless told otherwise one point after the other.
+    #[inline(always)]
+    fn lanes<V: Lanes<T>>(&self, cells: usize, cell: usize, unit: V) -> ([V; W], [V; W]) {
+        one_by_one(self, cells, cell, unit)
+    }
+
     /// Where, in cell sizes from the axis's lower end, the value that belongs to `dof` is taken when a field is interpolated:
     /// the node, or the Greville abscissa of a spline. Unless told otherwise the points are spread evenly.
     fn interpolation_point(&self, cells: usize, dof: usize) -> T {
         let intervals = self.dofs_on_axis(cells).saturating_sub(1).max(1);
         T::count(dof) * T::count(cells) / T::count(intervals)
     }
+}
+
+/// [`BasisFamily::WIDTH`] of the product of a family with itself.
+pub const fn width_in_lanes<T: Scalar, const W: usize, A: AxisFamily<T, W>>() -> usize {
+    if A::CONSECUTIVE && W <= MOST_WIDTH { W } else { 0 }
+}
+
+/// [`AxisFamily::lanes`] by way of [`AxisFamily::row`].
+pub fn one_by_one<T: Scalar, const W: usize, A: AxisFamily<T, W> + ?Sized, V: Lanes<T>>(
+    family: &A,
+    cells: usize,
+    cell: usize,
+    unit: V,
+) -> ([V; W], [V; W]) {
+    let rows: [Row<T, W>; LANES] = unit.array().map(|unit| family.row(cells, cell, unit));
+    (
+        std::array::from_fn(|k| V::new(std::array::from_fn(|l| rows[l].value[k]))),
+        std::array::from_fn(|k| V::new(std::array::from_fn(|l| rows[l].slope[k]))),
+    )
+}
+
+/// The factors along each axis at the points of `cell` with the coordinates `unit`.
+#[inline(always)]
+pub fn factors<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>, V: Lanes<T>>(
+    family: &A,
+    grid: &Grid<T, D>,
+    cell: &Cell<D>,
+    unit: &[V; D],
+) -> Factors<V, D> {
+    let (cells, zero) = (grid.cells(), V::splat(T::zero()));
+    let mut factors = Factors {
+        value: [[zero; MOST_WIDTH]; D],
+        slope: [[zero; MOST_WIDTH]; D],
+    };
+    for axis in 0..D {
+        let (value, slope) = family.lanes(cells[axis], cell[axis] as usize, unit[axis]);
+        for k in 0..W.min(MOST_WIDTH) {
+            factors.value[axis][k] = value[k];
+            factors.slope[axis][k] = slope[k];
+        }
+    }
+    factors
 }
 
 /// Point of `dof` in the product of `family` with itself.
@@ -168,6 +235,19 @@ pub(crate) fn advance<const D: usize>(k: &mut [usize; D], width: usize) -> bool 
 macro_rules! tensor_product_family {
     ($family:ty, width = $width:literal, degree = $degree:literal $(, at_fixed_points = $plain:expr)?) => {
         impl<T: $crate::scalar::Scalar, const D: usize> $crate::basis::BasisFamily<T, D> for $family {
+            const WIDTH: usize =
+                $crate::basis::tensor::width_in_lanes::<T, $width, $family>();
+
+            #[inline(always)]
+            fn factors<V: $crate::lanes::Lanes<T>>(
+                &self,
+                grid: &$crate::grid::Grid<T, D>,
+                cell: &$crate::grid::Cell<D>,
+                unit: &[V; D],
+            ) -> $crate::basis::tensor::Factors<V, D> {
+                $crate::basis::tensor::factors::<T, D, $width, _, V>(self, grid, cell, unit)
+            }
+
             fn degree(&self) -> usize {
                 $degree
             }

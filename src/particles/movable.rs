@@ -44,6 +44,27 @@ impl<'a, T, const D: usize, S, P> Movables<'a, T, D, S, P> {
     }
 }
 
+impl<T, const D: usize, S, P> Movables<'_, T, D, S, P> {
+    /// Where they all are.
+    #[inline(always)]
+    pub(crate) fn positions(&self) -> &[SVector<T, D>] {
+        self.position
+    }
+
+    /// The one with index `p`.
+    #[inline(always)]
+    pub(crate) fn at(&mut self, p: usize) -> Movable<'_, T, D, S, P> {
+        Movable {
+            position: &mut self.position[p],
+            displacement: &mut self.displacement[p],
+            stress: &mut self.stress[p],
+            volume: &mut self.volume[p],
+            state: &mut self.state[p],
+            phase: &mut self.phase[p],
+        }
+    }
+}
+
 impl<T: Send, const D: usize, S: Send, P: Send> Sliced for Movables<'_, T, D, S, P> {
     fn items(&self) -> usize {
         self.position.len()

@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Stepper;
+use super::lanes::{self, Motion, Pass};
 use super::spans::{Fault, Flaw, Moved};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
@@ -32,34 +33,53 @@ where
             self.particles.movable(),
             self.bins.cells_mut(),
             PerSpan(&mut self.spans.moved),
+            PerSpan(&mut self.spans.bounds),
         );
-        each_span(parallel, PARTICLES, work, &|first, (particles, cells, found)| {
-            let mut crossings = 0;
-            let moved = particles
-                .each()
-                .zip(cells)
-                .enumerate()
-                .try_for_each(|(k, (mut particle, cell))| {
-                    let mut v = SVector::zeros();
-                    let mut gradient = SMatrix::<T, D, D>::zeros();
-                    basis.for_each(grid, cell, particle.position, |i, phi, grad_phi| {
-                        v += velocity[i] * phi;
-                        gradient += velocity[i] * grad_phi.transpose();
-                    });
-                    let increment = gradient * dt;
-                    if P::COUPLED {
-                        phase.update(&increment, particle.phase);
-                    }
-                    particle
-                        .advance(law, dt, &(v * dt), &increment)
-                        .map_err(|flaw| Fault::Material(first + k, flaw))?;
-                    let crossed = settle(grid, cell, particle.position).ok_or(Fault::Left(first + k))?;
-                    crossings += usize::from(crossed);
-                    Ok(())
-                });
-            let fault = moved.err();
-            found.set(Moved { crossings, fault });
-        });
+        each_span(
+            parallel,
+            PARTICLES,
+            work,
+            &|first, (particles, cells, found, bounds)| {
+                if const { lanes::apply::<T, D, B>() } {
+                    let motion = Motion {
+                        velocity,
+                        dt,
+                        law,
+                        phase,
+                    };
+                    let (moved, span) = Pass::new(basis, grid).advance(&motion, first, particles, cells);
+                    bounds.set(span);
+                    return found.set(moved);
+                }
+                let mut crossings = 0;
+                let moved =
+                    particles
+                        .each()
+                        .zip(cells)
+                        .enumerate()
+                        .try_for_each(|(k, (mut particle, cell))| {
+                            let mut v = SVector::zeros();
+                            let mut gradient = SMatrix::<T, D, D>::zeros();
+                            basis.for_each(grid, cell, particle.position, |i, phi, grad_phi| {
+                                v += velocity[i] * phi;
+                                gradient += velocity[i] * grad_phi.transpose();
+                            });
+                            let increment = gradient * dt;
+                            if P::COUPLED {
+                                phase.update(&increment, particle.phase);
+                            }
+                            particle
+                                .advance(law, dt, &(v * dt), &increment)
+                                .map_err(|flaw| Fault::Material(first + k, flaw))?;
+                            let crossed =
+                                settle(grid, cell, particle.position).ok_or(Fault::Left(first + k))?;
+                            crossings += usize::from(crossed);
+                            Ok(())
+                        });
+                let fault = moved.err();
+                found.set(Moved { crossings, fault });
+            },
+        );
         self.account_for_moves()
     }
 
@@ -70,10 +90,11 @@ where
         let fault = moved.iter().find_map(|span| span.fault);
         self.diagnostics.grid_crossings += crossings;
         self.bins.note_crossings(crossings);
+        self.order.note_crossings(crossings);
         self.spans.stale |= crossings > 0;
         match fault {
             None => Ok(()),
-            Some(Fault::Material(p, flaw)) => Err(flaw.error(self.steps, p, L::LIMITS)),
+            Some(Fault::Material(p, flaw)) => Err(flaw.error(self.steps, self.order.number(p), L::LIMITS)),
             Some(Fault::Left(p)) => Err(self.left(p)),
         }
     }

@@ -105,6 +105,11 @@ impl<T: Scalar, const D: usize> Sums<T, D> {
         }
     }
 
+    /// Already added up.
+    pub(super) fn new(momentum: SVector<T, D>, scale: T) -> Self {
+        Self { momentum, scale }
+    }
+
     /// Adds the momentum of one particle.
     #[inline(always)]
     pub(super) fn add(&mut self, part: SVector<T, D>) {

@@ -3,12 +3,13 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::cell_sums::CellSums;
+use super::lanes::{self, Bodies, Pass};
 use super::spans::{Spans, share};
 use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::law::ConstitutiveLaw;
-use crate::parallel::{CELLS, PARTICLES, Windows, add_up, each_span};
+use crate::parallel::{Windows, add_up, each_span};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Point, Reconstruction};
 use crate::scalar::Scalar;
@@ -47,11 +48,12 @@ where
         let (basis, grid, phase, particles) = (&self.basis, &self.grid, &self.phase, &self.particles);
         let Spans {
             particles: spans,
+            lengths,
             scalars,
             vectors,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, particles.len(), PARTICLES);
+        let (span, parallel) = share(spans, particles.len(), lengths[0]);
         let work = (
             &particles.position[..],
             self.bins.cells(),
@@ -71,6 +73,25 @@ where
         )| {
             let ((first, mass), (_, force)) = (mass.one(), force.one());
             let force = &mut force[..mass.len()];
+            if const { lanes::apply::<T, D, B>() } {
+                let bodies_at = Bodies {
+                    positions,
+                    cells,
+                    masses: bodies.0,
+                };
+                let stress = |p: usize| {
+                    if P::COUPLED {
+                        phase.total_stress(&stresses.0[p], &stresses.1[p])
+                    } else {
+                        stresses.0[p]
+                    }
+                };
+                let mut sink = |i: usize, m, f| {
+                    mass[i - first] += m;
+                    force[i - first] -= f;
+                };
+                return Pass::new(basis, grid).sum_masses_and_forces(bodies_at, bodies.1, &stress, &mut sink);
+            }
             let mut sums = CellSums::new(basis, grid);
             let mut sink = |i: usize, Pair(m, f)| {
                 mass[i - first] += m;
@@ -124,10 +145,11 @@ where
         let (basis, grid, particles) = (&self.basis, &self.grid, &self.particles);
         let Spans {
             particles: spans,
+            lengths,
             scalars,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, particles.len(), PARTICLES);
+        let (span, parallel) = share(spans, particles.len(), lengths[0]);
         let work = (
             &particles.position[..],
             self.bins.cells(),
@@ -136,8 +158,16 @@ where
         );
         each_span(parallel, span, work, &|_, (positions, cells, masses, mass)| {
             let (first, mass) = mass.one();
-            let mut sums = CellSums::new(basis, grid);
             let mut sink = |i: usize, m| mass[i - first] += m;
+            if const { lanes::apply::<T, D, B>() } {
+                let bodies = Bodies {
+                    positions,
+                    cells,
+                    masses,
+                };
+                return Pass::new(basis, grid).sum_masses(bodies, &mut sink);
+            }
+            let mut sums = CellSums::new(basis, grid);
             for ((x, cell), &m) in positions.iter().zip(cells).zip(masses) {
                 sums.add(cell, x, |phi, _| m * phi, &mut sink);
             }
@@ -215,10 +245,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
         let occupied = cloud.bins.occupied();
         let Spans {
             cells: spans,
+            lengths,
             vectors,
             ..
         } = self.spans;
-        let (span, parallel) = share(spans, occupied.len(), CELLS);
+        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
         let work = (occupied, Windows::new(spans, vectors, self.force, 1));
         each_span(parallel, span, work, &|place, (cells, force)| {
             let (first, force) = force.one();

@@ -22,8 +22,10 @@ mod critical;
 mod diagnostics;
 mod forces;
 mod forcing;
+mod lanes;
 mod liquid;
 mod matrix;
+mod order;
 mod simulation;
 mod spans;
 mod velocity;
@@ -45,6 +47,7 @@ use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Cut, Reconstruction};
 use crate::scalar::Scalar;
+use order::Order;
 use spans::Spans;
 
 /// Most DOFs that a particle sees with the bases of this crate: four along each axis in three dimensions. Others may be
@@ -91,6 +94,7 @@ where
     particles: Particles<T, D, L::State, P::Particle>,
     surface: Vec<SurfacePoint<T>>,
     bins: Bins<D>,
+    order: Order,
     /// Where the surfaces cut cells.
     cuts: Vec<Cut<T>>,
     /// The solid's DOFs; in one phase the only ones.
@@ -200,6 +204,10 @@ where
         for (cell, x) in bins.cells().iter().zip(&mut particles.position) {
             grid.keep_off_edges(cell, x);
         }
+        let order = match P::FLOWS {
+            true => Order::default(),
+            false => Order::new(&grid, bins.cells()),
+        };
         // Overwritten walls would tear at an acceleration that knows nothing of them.
         let velocity_mass = match R::PARTICLE_MATRIX {
             true => VelocityMass::Constrained,
@@ -230,6 +238,7 @@ where
             particles,
             surface,
             bins,
+            order,
             cuts: Vec::with_capacity(surface_count),
             dofs,
             liquid,
@@ -255,7 +264,8 @@ where
     fn allocate(&mut self) {
         self.prepare();
         if !P::FLOWS {
-            self.spans.allocate(R::PLAIN, R::BY_CELLS);
+            let dofs = self.dofs.mass.len();
+            self.spans.allocate(R::PLAIN, R::BY_CELLS, dofs);
         }
         if R::AMOUNTS_AT_PARTICLES {
             return;
@@ -300,6 +310,9 @@ where
 
     /// Takes in where the particles are.
     fn prepare(&mut self) {
+        if self.order.is_lost() {
+            self.restore_order();
+        }
         let fits = !R::PLAIN;
         if fits || B::TAKES_IN_CELLS {
             self.bins.list(&self.grid);
@@ -315,6 +328,24 @@ where
         self.reconstruction.prepare(&cloud);
         let reduced = self.reconstruction.reduced_cells();
         self.diagnostics.record_reduced(reduced);
+    }
+
+    /// Puts the particles in the order of their cells.
+    #[inline(never)]
+    fn restore_order(&mut self) {
+        let surface = &mut self.surface;
+        let cells = self.bins.cells_mut();
+        let moved = self
+            .order
+            .restore(&self.grid, cells, &mut self.particles, |targets| {
+                for point in surface.iter_mut() {
+                    point.particle = targets[point.particle] as usize;
+                }
+            });
+        if moved {
+            self.bins.note_crossings(1);
+            self.spans.forget();
+        }
     }
 
     /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing has used it
@@ -379,6 +410,7 @@ where
 
     fn left(&self, particle: usize) -> StepError {
         let position = values(&self.particles.position[particle]);
+        let particle = self.order.number(particle);
         match position.iter().find(|x| !x.is_finite()) {
             Some(&value) => StepError::Invalid {
                 step: self.steps,
@@ -394,9 +426,17 @@ where
         }
     }
 
-    /// The particles.
+    /// The particles, in the order in which they are kept: see [`Stepper::numbers`].
     pub fn particles(&self) -> &Particles<T, D, L::State, P::Particle> {
         &self.particles
+    }
+
+    /// For each of [`Stepper::particles`] its number in the order in which the [`Setup`] gave them; `None` while that is the
+    /// order. In two and three dimensions particles are put in the order of their cells, at the start and again as they move,
+    /// in one dimension only where they start without any. [`Simulation::particles`] gives them back in their first order, and
+    /// errors name their first numbers.
+    pub fn numbers(&self) -> Option<&[u32]> {
+        self.order.numbers()
     }
 
     /// The grid.
@@ -439,6 +479,7 @@ where
         let both = size_of::<T>() + size_of::<liquid::Sums<T, D>>() + 2 * size_of::<SVector<T, D>>();
         self.particles.bytes()
             + self.bins.bytes()
+            + self.order.bytes()
             + self.basis.bytes()
             + self.reconstruction.bytes()
             + self.dofs.bytes()

@@ -25,10 +25,11 @@ pub trait Simulation<const D: usize> {
     /// See [`Stepper::set_body_forces`].
     fn set_body_forces(&mut self, force: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>);
 
-    /// A copy of the particles, without the law's and the second phase's data.
+    /// A copy of the particles, without the law's and the second phase's data, in the order in which they were given.
     fn particles(&self) -> Particles<f64, D>;
 
-    /// The particles and their liquid without a copy (in `f64`); everything else is given up.
+    /// The particles and their liquid without a copy (in `f64`), in the order in which they were given; everything else is
+    /// given up.
     fn into_particles(self: Box<Self>) -> (Particles<f64, D>, Vec<PoreLiquid<f64, D>>);
 
     /// The liquid of every particle; empty where none flows.
@@ -73,14 +74,18 @@ where
     }
 
     fn particles(&self) -> Particles<f64, D> {
-        self.particles.cast()
+        let mut particles = self.particles.cast();
+        particles.put_back(self.numbers().map(<[u32]>::to_vec));
+        particles
     }
 
     fn into_particles(self: Box<Self>) -> (Particles<f64, D>, Vec<PoreLiquid<f64, D>>) {
         let liquid = Simulation::liquid(self.as_ref());
         // The DOFs' arrays and the reconstruction's are freed before the particles may be copied.
-        let Self { particles, .. } = *self;
-        (particles.into_cast(), liquid)
+        let Self { particles, order, .. } = *self;
+        let mut particles = particles.into_cast();
+        particles.put_back(order.into_numbers());
+        (particles, liquid)
     }
 
     fn liquid(&self) -> Vec<PoreLiquid<f64, D>> {

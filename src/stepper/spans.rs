@@ -1,11 +1,14 @@
 //! The spans of the passes over particles and cells, with the storage they need.
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use super::diagnostics::Sums;
+use super::lanes;
 use crate::basis::BasisFamily;
 use crate::error::StepError;
-use crate::grid::{Cell, Grid};
+use crate::grid::Grid;
 use crate::parallel::{CELLS, PARTICLES, SpanWindow, fit, many_threads};
 use crate::particles::Bins;
 use crate::scalar::Scalar;
@@ -17,7 +20,13 @@ pub(super) struct Spans<T, const D: usize> {
     pub(super) particles: Vec<SpanWindow>,
     /// Of occupied cells; a single one where they are few.
     pub(super) cells: Vec<SpanWindow>,
+    /// Length of the spans of particles and of cells.
+    pub(super) lengths: [usize; 2],
+    /// Lowest and highest number of a cell that holds one of [`PARTICLES`] particles that follow each other.
+    pub(super) bounds: Vec<[u32; 2]>,
     pub(super) stale: bool,
+    /// Whether particles have moved to other places since `bounds` were noted.
+    unknown: bool,
     pub(super) scalars: Vec<T>,
     pub(super) vectors: Vec<SVector<T, D>>,
     pub(super) matrices: Vec<T>,
@@ -26,10 +35,19 @@ pub(super) struct Spans<T, const D: usize> {
 }
 
 /// What became of the particles of a span that moved.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Moved<T> {
     pub(super) crossings: usize,
     pub(super) fault: Option<Fault<T>>,
+}
+
+impl<T> Default for Moved<T> {
+    fn default() -> Self {
+        Self {
+            crossings: 0,
+            fault: None,
+        }
+    }
 }
 
 /// What can go wrong with a particle that moves.
@@ -76,18 +94,15 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
         Self {
             particles: Vec::with_capacity(spans),
             cells: Vec::new(),
+            lengths: [PARTICLES, CELLS],
+            bounds: vec![[0, 0]; spans],
             stale: true,
+            unknown: true,
             scalars: Vec::new(),
             vectors: Vec::new(),
             matrices: Vec::new(),
             sums: vec![Sums::zero(); spans],
-            moved: vec![
-                Moved {
-                    crossings: 0,
-                    fault: None
-                };
-                spans
-            ],
+            moved: vec![Moved::default(); spans],
         }
     }
 
@@ -103,31 +118,37 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             return;
         }
         self.stale = false;
-        let dofs = basis.dof_count(grid);
-        let bounds = bins.cells().chunks(PARTICLES).map(|cells| {
-            let numbers = cells.iter().map(|cell| grid.linear(cell));
-            numbers.fold((usize::MAX, 0), |(low, high), n| (low.min(n), high.max(n)))
-        });
-        lay(
-            &mut self.particles,
-            dofs,
-            bounds.map(|(low, high)| window(basis, grid, low, high)),
-        );
+        if std::mem::take(&mut self.unknown) || !lanes::apply::<T, D, B>() {
+            self.bound(grid, bins);
+        }
+        let places = Places { basis, grid };
+        let bounds = self.bounds.iter().copied();
+        self.lengths[0] = PARTICLES * places.lay(&mut self.particles, self.bounds.len(), bounds);
         if fits {
             let bounds = bins
                 .occupied()
                 .chunks(CELLS)
-                .filter_map(|cells| Some((*cells.first()? as usize, *cells.last()? as usize)));
-            lay(
-                &mut self.cells,
-                dofs,
-                bounds.map(|(low, high)| window(basis, grid, low, high)),
-            );
+                .filter_map(|cells| Some([*cells.first()?, *cells.last()?]));
+            let count = bins.occupied().len().div_ceil(CELLS);
+            self.lengths[1] = CELLS * places.lay(&mut self.cells, count, bounds);
+        }
+    }
+
+    /// Particles have moved to other places.
+    pub(super) fn forget(&mut self) {
+        (self.stale, self.unknown) = (true, true);
+    }
+
+    fn bound(&mut self, grid: &Grid<T, D>, bins: &Bins<D>) {
+        let spans = bins.cells().chunks(PARTICLES);
+        for (bounds, cells) in self.bounds.iter_mut().zip(spans) {
+            let numbers = cells.iter().map(|cell| grid.linear(cell) as u32);
+            *bounds = numbers.fold([u32::MAX, 0], |[low, high], n| [low.min(n), high.max(n)]);
         }
     }
 
     /// Allocates what passes will need: sums of vectors over particles, over cells, or neither.
-    pub(super) fn allocate(&mut self, particles: bool, cells: bool) {
+    pub(super) fn allocate(&mut self, particles: bool, cells: bool, dofs: usize) {
         fit(&self.particles, &mut self.scalars, 1);
         if particles {
             fit(&self.particles, &mut self.vectors, 1);
@@ -135,11 +156,17 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
         if cells {
             fit(&self.cells, &mut self.vectors, 1);
         }
+        // Beyond one dimension windows grow by whole rows when particles cross.
+        if D > 1 {
+            reserve(&mut self.scalars, MOST_OVERLAP * dofs);
+            reserve(&mut self.vectors, MOST_OVERLAP * dofs);
+        }
     }
 
     /// Bytes allocated.
     pub(super) fn bytes(&self) -> usize {
         size_of::<SpanWindow>() * (self.particles.capacity() + self.cells.capacity())
+            + size_of::<[u32; 2]>() * self.bounds.capacity()
             + size_of::<T>() * (self.scalars.capacity() + self.matrices.capacity())
             + size_of::<SVector<T, D>>() * self.vectors.capacity()
             + size_of::<Sums<T, D>>() * self.sums.capacity()
@@ -154,6 +181,16 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
     }
 }
 
+/// Makes room for so many values in all, if there are any.
+fn reserve<Q>(values: &mut Vec<Q>, count: usize) {
+    if !values.is_empty() {
+        values.reserve_exact(count.saturating_sub(values.len()));
+    }
+}
+
+/// How many windows may hold a DOF, on average.
+const MOST_OVERLAP: usize = 2;
+
 /// Length of a span of `items` items whose windows are `spans`, and whether threads should share them.
 pub(super) fn share(spans: &[SpanWindow], items: usize, length: usize) -> (usize, bool) {
     match spans.len() {
@@ -162,35 +199,66 @@ pub(super) fn share(spans: &[SpanWindow], items: usize, length: usize) -> (usize
     }
 }
 
-fn window<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
-    basis: &B,
-    grid: &Grid<T, D>,
-    low: usize,
-    high: usize,
-) -> std::ops::Range<usize> {
-    let cell = |number: usize| -> Cell<D> { grid.cell(number) };
-    basis.dof_window(grid, &cell(low), &cell(high))
+/// Where the DOFs of cells are.
+struct Places<'a, B, G> {
+    basis: &'a B,
+    grid: &'a G,
 }
 
-/// Lays windows end to end, or takes the whole as one if they overlap so much that they would cost more than they bring.
-fn lay(spans: &mut Vec<SpanWindow>, dofs: usize, windows: impl Iterator<Item = std::ops::Range<usize>>) {
-    spans.clear();
-    let mut offset = 0;
-    for window in windows {
-        let len = window.len();
-        spans.push(SpanWindow {
-            first: window.start,
-            len,
-            offset,
-        });
-        offset += len;
-    }
-    if spans.len() <= 1 || offset > 2 * dofs {
+impl<B, T: Scalar, const D: usize> Places<'_, B, Grid<T, D>>
+where
+    B: BasisFamily<T, D>,
+{
+    /// Lays the windows of spans end to end, given the bounds of `count` shortest ones. Where they overlap so much that they
+    /// would cost more than they bring, spans are made of two, four, ... of the shortest ones; returns of how many. A single
+    /// one is the whole.
+    fn lay(
+        &self,
+        spans: &mut Vec<SpanWindow>,
+        count: usize,
+        bounds: impl Iterator<Item = [u32; 2]> + Clone,
+    ) -> usize {
+        let dofs = self.basis.dof_count(self.grid);
+        let mut joined = 1;
+        while joined < count {
+            if self.lay_joined(spans, joined, bounds.clone()) <= MOST_OVERLAP * dofs {
+                return joined;
+            }
+            joined *= 2;
+        }
         spans.clear();
         spans.push(SpanWindow {
             first: 0,
             len: dofs,
             offset: 0,
         });
+        joined
+    }
+
+    /// Lays the windows of spans of so many shortest ones each; returns how many DOFs they have together.
+    fn lay_joined(
+        &self,
+        spans: &mut Vec<SpanWindow>,
+        joined: usize,
+        mut bounds: impl Iterator<Item = [u32; 2]>,
+    ) -> usize {
+        spans.clear();
+        spans.reserve(bounds.size_hint().0);
+        let mut offset = 0;
+        while let Some([mut low, mut high]) = bounds.next() {
+            for [lower, higher] in bounds.by_ref().take(joined - 1) {
+                (low, high) = (low.min(lower), high.max(higher));
+            }
+            let window = self.window(low as usize, high as usize);
+            let (first, len) = (window.start, window.len());
+            spans.push(SpanWindow { first, len, offset });
+            offset += len;
+        }
+        offset
+    }
+
+    fn window(&self, low: usize, high: usize) -> Range<usize> {
+        let (low, high) = (self.grid.cell(low), self.grid.cell(high));
+        self.basis.dof_window(self.grid, &low, &high)
     }
 }

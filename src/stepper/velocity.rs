@@ -5,6 +5,7 @@ use nalgebra::SVector;
 use super::acceleration::Walls;
 use super::cell_sums::CellSums;
 use super::diagnostics::Sums;
+use super::lanes::{self, Acceleration, Bodies, Pass};
 use super::matrix::Unknown;
 use super::spans::{Spans, share};
 use super::{Dofs, Forcing, Stepper, cloud};
@@ -13,7 +14,7 @@ use crate::field::MassMomentum;
 use crate::grid::Grid;
 use crate::law::ConstitutiveLaw;
 use crate::mass::{VelocityMass, banded_row};
-use crate::parallel::{CELLS, PARTICLES, PerSpan, Windows, add_up, each_span, many_threads};
+use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, many_threads};
 use crate::phase::Phase;
 use crate::reconstruction::{Point, Reconstruction};
 use crate::scalar::Scalar;
@@ -66,6 +67,19 @@ where
             cells,
             found,
         )| {
+            if const { lanes::apply::<T, D, B>() } {
+                let bodies = Bodies {
+                    positions,
+                    cells,
+                    masses,
+                };
+                let acceleration = Acceleration {
+                    dofs: acceleration,
+                    dt,
+                };
+                let pass = Pass::new(basis, grid);
+                return found.set(pass.accelerate::<false>(bodies, velocities, acceleration, &mut |_, _| ()));
+            }
             let mut sums = Sums::zero();
             let bodies = velocities.iter_mut().zip(masses);
             for ((x, cell), (velocity, &mass)) in positions.iter().zip(cells).zip(bodies) {
@@ -87,11 +101,12 @@ where
         let particles = &mut self.particles;
         let Spans {
             particles: spans,
+            lengths,
             vectors,
             sums,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, particles.len(), PARTICLES);
+        let (span, parallel) = share(spans, particles.len(), lengths[0]);
         sums.fill(Sums::zero());
         let work = (
             &particles.position[..],
@@ -110,10 +125,23 @@ where
             momentum,
             found,
         )| {
-            let mut sums = Sums::zero();
             let (first, momentum) = momentum.one();
-            let mut momenta = CellSums::new(basis, grid);
             let mut sink = |i: usize, q| momentum[i - first] += q;
+            if const { lanes::apply::<T, D, B>() } {
+                let bodies = Bodies {
+                    positions,
+                    cells,
+                    masses,
+                };
+                let acceleration = Acceleration {
+                    dofs: acceleration,
+                    dt,
+                };
+                let pass = Pass::new(basis, grid);
+                return found.set(pass.accelerate::<true>(bodies, velocities, acceleration, &mut sink));
+            }
+            let mut sums = Sums::zero();
+            let mut momenta = CellSums::new(basis, grid);
             let bodies = velocities.iter_mut().zip(masses);
             for ((x, cell), (velocity, &mass)) in positions.iter().zip(cells).zip(bodies) {
                 let mut a = SVector::zeros();
@@ -243,11 +271,12 @@ where
         let occupied = self.bins.occupied();
         let Spans {
             cells: spans,
+            lengths,
             matrices,
             vectors,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, occupied.len(), CELLS);
+        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
         let work = (
             occupied,
             Windows::new(spans, matrices, mass, width),

@@ -1,0 +1,216 @@
+//! Four numbers computed side by side.
+//!
+//! A processor's vector unit adds or multiplies four `f64` in the time of one. Compilers rarely find that out for the sums of
+//! a particle method, so the passes over particles in two and three dimensions are written for [`Lanes`]: one lane for each
+//! of four particles of a cell. For `f64` and `f32` the lanes are a vector register (crate `wide`); for every other scalar,
+//! dual numbers for instance, they are [`Four`], four scalars after one another: the same code and the same result.
+
+use std::any::Any;
+use std::ops::{Add, Mul, Sub};
+
+use wide::{f32x4, f64x4};
+
+use crate::scalar::Scalar;
+
+/// Number of lanes.
+pub const LANES: usize = 4;
+
+/// [`LANES`] numbers of type `T` that are computed with side by side.
+pub trait Lanes<T>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Send {
+    /// The given ones.
+    fn new(values: [T; LANES]) -> Self;
+
+    /// The numbers.
+    fn array(self) -> [T; LANES];
+
+    /// The same one in every lane.
+    fn splat(value: T) -> Self;
+
+    /// `self * factor + term`, in one operation where the processor has it.
+    fn mul_add(self, factor: Self, term: Self) -> Self;
+
+    /// Square roots.
+    fn sqrt(self) -> Self;
+
+    /// Sizes.
+    fn abs(self) -> Self;
+
+    /// Sums over the lanes of four packs at once.
+    fn sums(packs: [Self; 4]) -> [T; 4];
+}
+
+/// `value` as the other type, if that is the same one.
+#[inline(always)]
+fn same<A: Copy + 'static, B: Copy + 'static>(value: A) -> Option<B> {
+    (&value as &dyn Any).downcast_ref().copied()
+}
+
+/// Whether both are the same type.
+#[inline(always)]
+pub(crate) fn is<A: 'static, B: 'static>() -> bool {
+    std::any::TypeId::of::<A>() == std::any::TypeId::of::<B>()
+}
+
+/// Calls `$run::<V>` with the lanes `V` of the scalar `$scalar`. The size is asked first because the compiler knows it before
+/// it makes the code for the lanes that are not wanted.
+macro_rules! with_lanes_of {
+    ($scalar:ty, $receiver:ident . $run:ident $([$($more:tt),*])? ( $($argument:expr),* )) => {
+        if const { size_of::<$scalar>() == 8 } && $crate::lanes::is::<$scalar, f64>() {
+            $receiver.$run::<::wide::f64x4 $(, $($more),*)?>($($argument),*)
+        } else if const { size_of::<$scalar>() == 4 } && $crate::lanes::is::<$scalar, f32>() {
+            $receiver.$run::<::wide::f32x4 $(, $($more),*)?>($($argument),*)
+        } else {
+            $receiver.$run::<$crate::lanes::Four<$scalar> $(, $($more),*)?>($($argument),*)
+        }
+    };
+}
+pub(crate) use with_lanes_of;
+
+/// Lanes of any scalar.
+#[derive(Clone, Copy, Debug)]
+pub struct Four<T>(pub [T; LANES]);
+
+impl<T: Scalar> Four<T> {
+    #[inline(always)]
+    fn with(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
+        Self(std::array::from_fn(|l| f(self.0[l], other.0[l])))
+    }
+}
+
+impl<T: Scalar> Add for Four<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.with(other, |a, b| a + b)
+    }
+}
+
+impl<T: Scalar> Sub for Four<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.with(other, |a, b| a - b)
+    }
+}
+
+impl<T: Scalar> Mul for Four<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.with(other, |a, b| a * b)
+    }
+}
+
+impl<T: Scalar> Lanes<T> for Four<T> {
+    #[inline(always)]
+    fn new(values: [T; LANES]) -> Self {
+        Self(values)
+    }
+
+    #[inline(always)]
+    fn array(self) -> [T; LANES] {
+        self.0
+    }
+
+    #[inline(always)]
+    fn splat(value: T) -> Self {
+        Self([value; LANES])
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        self * factor + term
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(T::sqrt))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(nalgebra::ComplexField::abs))
+    }
+
+    #[inline(always)]
+    fn sums(packs: [Self; 4]) -> [T; 4] {
+        packs.map(|Self([a, b, c, d])| (a + b) + (c + d))
+    }
+}
+
+/// The vectors of a processor are the lanes of their own scalar only: asked for another one they answer with zeros.
+macro_rules! vector {
+    ($vector:ty, $scalar:ty) => {
+        impl<T: Scalar> Lanes<T> for $vector {
+            #[inline(always)]
+            fn new(values: [T; LANES]) -> Self {
+                let values: Option<[$scalar; LANES]> = same(values);
+                Self::new(values.unwrap_or_default())
+            }
+
+            #[inline(always)]
+            fn array(self) -> [T; LANES] {
+                same(self.to_array()).unwrap_or([T::zero(); LANES])
+            }
+
+            #[inline(always)]
+            fn splat(value: T) -> Self {
+                Self::splat(same(value).unwrap_or_default())
+            }
+
+            #[inline(always)]
+            fn mul_add(self, factor: Self, term: Self) -> Self {
+                self.mul_add(factor, term)
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+
+            #[inline(always)]
+            fn sums(packs: [Self; 4]) -> [T; 4] {
+                let [a, b, c, d] = Self::transpose(packs);
+                ((a + b) + (c + d)).array()
+            }
+        }
+    };
+}
+
+vector!(f64x4, f64);
+vector!(f32x4, f32);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check<T: Scalar, V: Lanes<T>>() {
+        let numbers = [0.5, -2.0, 3.0, 4.0].map(T::lit);
+        let (a, two) = (V::new(numbers), V::splat(T::lit(2.0)));
+        assert_eq!(a.array(), numbers);
+        assert_eq!(
+            a.mul_add(two, a - two).array(),
+            [-0.5, -8.0, 7.0, 10.0].map(T::lit)
+        );
+        assert_eq!((a.abs() * two).sqrt().array()[1], T::lit(2.0));
+        assert_eq!(
+            V::sums([a, two, a + two, a * two]),
+            [5.5, 8.0, 13.5, 11.0].map(T::lit)
+        );
+    }
+
+    #[test]
+    fn all_lanes_do_the_same() {
+        check::<f64, f64x4>();
+        check::<f32, f32x4>();
+        check::<f64, Four<f64>>();
+    }
+}

@@ -1,0 +1,88 @@
+//! Stage 1: masses, and forces where the particles are their points.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::sums::{Parts, Sums};
+use super::{Group, Pass, tensors};
+use crate::basis::BasisFamily;
+use crate::grid::Cell;
+use crate::lanes::{LANES, Lanes, with_lanes_of};
+use crate::scalar::Scalar;
+
+/// Particles of a span.
+#[derive(Clone, Copy)]
+pub(in super::super) struct Bodies<'a, T, const D: usize> {
+    pub(in super::super) positions: &'a [SVector<T, D>],
+    pub(in super::super) cells: &'a [Cell<D>],
+    pub(in super::super) masses: &'a [T],
+}
+
+impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
+    /// Hands `sink(dof, mass)` what the particles add to the DOFs.
+    pub(in super::super) fn sum_masses(&self, bodies: Bodies<'_, T, D>, sink: &mut impl FnMut(usize, T)) {
+        with_lanes_of!(T, self.masses_in(bodies, sink));
+    }
+
+    #[inline(never)]
+    fn masses_in<V: Lanes<T>>(&self, bodies: Bodies<'_, T, D>, sink: &mut impl FnMut(usize, T)) {
+        let mut sums = Sums::<V, D>::new();
+        let mut sink = |i: usize, m: T, _| sink(i, m);
+        let mut p = 0;
+        while p < bodies.cells.len() {
+            let group = Group::at(p, bodies.cells);
+            let cell = &bodies.cells[p];
+            let factors = self.factors(cell, &group.vectors::<T, V, D>(bodies.positions));
+            let parts = Parts {
+                scalar: Some(group.amounts(bodies.masses)),
+                vector: None,
+                tensor: None,
+            };
+            sums.add(self, cell, &factors, &parts, &mut sink);
+            p += group.count;
+        }
+        sums.flush(self, true, &mut sink);
+    }
+
+    /// Hands `sink(dof, mass, integral of stress times gradient)` what the particles add to the DOFs; `stress` says what the
+    /// momentum balance feels of a particle.
+    pub(in super::super) fn sum_masses_and_forces(
+        &self,
+        bodies: Bodies<'_, T, D>,
+        volumes: &[T],
+        stress: &impl Fn(usize) -> SMatrix<T, D, D>,
+        sink: &mut impl FnMut(usize, T, SVector<T, D>),
+    ) {
+        with_lanes_of!(T, self.masses_and_forces_in(bodies, volumes, stress, sink));
+    }
+
+    #[inline(never)]
+    fn masses_and_forces_in<V: Lanes<T>>(
+        &self,
+        bodies: Bodies<'_, T, D>,
+        volumes: &[T],
+        stress: &impl Fn(usize) -> SMatrix<T, D, D>,
+        sink: &mut impl FnMut(usize, T, SVector<T, D>),
+    ) {
+        let inverse = self.grid.inverse_cell_size();
+        let mut sums = Sums::<V, D>::new();
+        let mut p = 0;
+        while p < bodies.cells.len() {
+            let group = Group::at(p, bodies.cells);
+            let cell = &bodies.cells[p];
+            let factors = self.factors(cell, &group.vectors::<T, V, D>(bodies.positions));
+            let volume = group.amounts::<T, V>(volumes);
+            let along: [V; D] = std::array::from_fn(|a| volume * V::splat(inverse[a]));
+            let stresses: [_; LANES] = std::array::from_fn(|l| stress(group.first + l.min(group.count - 1)));
+            let tensor = tensors::<T, V, D>(&stresses);
+            let weighted = std::array::from_fn(|c| std::array::from_fn(|a| tensor[c][a] * along[a]));
+            let parts = Parts {
+                scalar: Some(group.amounts(bodies.masses)),
+                vector: None,
+                tensor: Some(weighted),
+            };
+            sums.add(self, cell, &factors, &parts, sink);
+            p += group.count;
+        }
+        sums.flush(self, true, sink);
+    }
+}

@@ -1,0 +1,115 @@
+//! The passes over particles in two and three dimensions, four particles of a cell at a time.
+//!
+//! Everything is computed in [`Lanes`], one for each of up to four particles that follow each other in a cell ([`Group`]).
+//! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs, and then over the
+//! rows. What a group adds to DOFs stays in lanes while particles of its cell come, and longer where the next cell is the
+//! neighbour along axis 0 ([`sums`]). One file per pass: `mass_and_force`, `velocity`, `advance`.
+//!
+//! A group that is not full repeats its last particle without mass and volume. Groups depend on the particles' order and on
+//! where spans begin, not on threads.
+
+mod advance;
+mod mass_and_force;
+mod rows;
+mod sums;
+mod velocity;
+
+pub(super) use advance::Motion;
+pub(super) use mass_and_force::Bodies;
+pub(super) use velocity::Acceleration;
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::basis::{BasisFamily, Factors};
+use crate::grid::{Cell, Grid};
+use crate::lanes::{LANES, Lanes};
+use crate::scalar::Scalar;
+
+/// Whether the passes go this way. In one dimension there is little to share along the axes.
+pub(super) const fn apply<T: Scalar, const D: usize, B: BasisFamily<T, D>>() -> bool {
+    D > 1 && B::WIDTH > 0
+}
+
+/// Particles of one cell that follow each other, at most [`LANES`].
+#[derive(Clone, Copy)]
+struct Group {
+    first: usize,
+    count: usize,
+}
+
+impl Group {
+    /// The one that begins with particle `first`.
+    #[inline(always)]
+    fn at<const D: usize>(first: usize, cells: &[Cell<D>]) -> Self {
+        let all = &cells[first..cells.len().min(first + LANES)];
+        let count = all.iter().take_while(|&cell| *cell == all[0]).count();
+        Self { first, count }
+    }
+
+    /// Of each lane, what the arrays say of its particle.
+    #[inline(always)]
+    fn pick<A: Copy>(self, values: &[A]) -> [A; LANES] {
+        match values[self.first..].first_chunk() {
+            Some(&values) if self.count == LANES => values,
+            _ => std::array::from_fn(|l| values[self.first + l.min(self.count - 1)]),
+        }
+    }
+
+    /// A number of each particle, zero in spare lanes.
+    #[inline(always)]
+    fn amounts<T: Scalar, V: Lanes<T>>(self, values: &[T]) -> V {
+        let mut lanes = self.pick(values);
+        if self.count < LANES {
+            lanes[self.count..].fill(T::zero());
+        }
+        V::new(lanes)
+    }
+
+    /// The components of a vector.
+    #[inline(always)]
+    fn vectors<T: Scalar, V: Lanes<T>, const D: usize>(self, values: &[SVector<T, D>]) -> [V; D] {
+        let lanes = self.pick(values);
+        std::array::from_fn(|a| V::new(std::array::from_fn(|l| lanes[l][a])))
+    }
+}
+
+/// Component `(c, a)` of the particles' tensors at `[c][a]`.
+#[inline(always)]
+fn tensors<T: Scalar, V: Lanes<T>, const D: usize>(lanes: &[SMatrix<T, D, D>; LANES]) -> [[V; D]; D] {
+    std::array::from_fn(|c| std::array::from_fn(|a| V::new(std::array::from_fn(|l| lanes[l][(c, a)]))))
+}
+
+/// What all groups of a pass share.
+#[derive(Clone, Copy)]
+pub(super) struct Pass<'a, T, const D: usize, B> {
+    basis: &'a B,
+    grid: &'a Grid<T, D>,
+    /// Difference of the numbers of neighbouring DOFs along each axis.
+    strides: [usize; D],
+}
+
+impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'a, T, D, B> {
+    pub(super) fn new(basis: &'a B, grid: &'a Grid<T, D>) -> Self {
+        let dofs = basis.dofs(grid);
+        let mut strides = [1; D];
+        for axis in 1..D {
+            strides[axis] = strides[axis - 1] * dofs[axis - 1];
+        }
+        Self { basis, grid, strides }
+    }
+
+    /// Coordinates in `cell`, from 0 to 1.
+    #[inline(always)]
+    fn unit<V: Lanes<T>>(&self, cell: &Cell<D>, x: &[V; D]) -> [V; D] {
+        let inverse = self.grid.inverse_cell_size();
+        std::array::from_fn(|a| {
+            let index = V::splat(T::lit(f64::from(cell[a])));
+            (x[a] - V::splat(self.grid.min()[a])) * V::splat(inverse[a]) - index
+        })
+    }
+
+    #[inline(always)]
+    fn factors<V: Lanes<T>>(&self, cell: &Cell<D>, x: &[V; D]) -> Factors<V, D> {
+        self.basis.factors(self.grid, cell, &self.unit(cell, x))
+    }
+}

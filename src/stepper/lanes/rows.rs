@@ -1,0 +1,109 @@
+//! The DOFs of a cell, row by row along axis 0.
+
+use nalgebra::SVector;
+
+use super::Pass;
+use crate::basis::{BasisFamily, Factors};
+use crate::grid::Cell;
+use crate::lanes::Lanes;
+use crate::scalar::Scalar;
+
+/// The factors of one row: the value of the functions across it, and their slopes along the axes 1 and 2.
+#[derive(Clone, Copy)]
+pub(super) struct Across<V> {
+    pub(super) value: V,
+    pub(super) slope: [V; 2],
+}
+
+impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
+    /// The first DOF of `cell`.
+    #[inline(always)]
+    pub(super) fn first_dof(&self, cell: &Cell<D>) -> usize {
+        (0..D).map(|axis| cell[axis] as usize * self.strides[axis]).sum()
+    }
+
+    /// Number of rows.
+    pub(super) const ROWS: usize = B::WIDTH.pow(D as u32 - 1);
+
+    /// Of a row the first DOF after the cell's first, and its place along the axes 1 and 2.
+    #[inline(always)]
+    pub(super) fn row(&self, row: usize) -> (usize, [usize; 2]) {
+        let (k1, k2) = (row % B::WIDTH, row / B::WIDTH);
+        let deeper = if D == 3 { k2 * self.strides[D - 1] } else { 0 };
+        (deeper + k1 * self.strides[1], [k1, k2])
+    }
+
+    /// Products of the factors across the row at `k`.
+    #[inline(always)]
+    pub(super) fn across<V: Lanes<T>>(factors: &Factors<V, D>, [k1, k2]: [usize; 2]) -> Across<V> {
+        let (value, slope) = (&factors.value, &factors.slope);
+        let zero = V::splat(T::zero());
+        if D == 3 {
+            Across {
+                value: value[1][k1] * value[D - 1][k2],
+                slope: [slope[1][k1] * value[D - 1][k2], value[1][k1] * slope[D - 1][k2]],
+            }
+        } else {
+            Across {
+                value: value[1][k1],
+                slope: [slope[1][k1], zero],
+            }
+        }
+    }
+
+    /// Value of the field with the given DOFs, at the points with the given factors.
+    #[inline(always)]
+    pub(super) fn value<V: Lanes<T>>(
+        &self,
+        first: usize,
+        factors: &Factors<V, D>,
+        dofs: &[SVector<T, D>],
+    ) -> [V; D] {
+        let mut result = [V::splat(T::zero()); D];
+        for row in 0..Self::ROWS {
+            let (offset, k) = self.row(row);
+            let across = Self::across(factors, k);
+            let dofs = &dofs[first + offset..first + offset + B::WIDTH];
+            for c in 0..D {
+                let mut sum = factors.value[0][0] * V::splat(dofs[0][c]);
+                for i in 1..B::WIDTH {
+                    sum = factors.value[0][i].mul_add(V::splat(dofs[i][c]), sum);
+                }
+                result[c] = sum.mul_add(across.value, result[c]);
+            }
+        }
+        result
+    }
+
+    /// The same with the derivatives by the coordinates in cell sizes, component `c` by axis `a` at `[c][a]`.
+    #[inline(always)]
+    pub(super) fn value_and_slopes<V: Lanes<T>>(
+        &self,
+        first: usize,
+        factors: &Factors<V, D>,
+        dofs: &[SVector<T, D>],
+    ) -> ([V; D], [[V; D]; D]) {
+        let zero = V::splat(T::zero());
+        let (mut value, mut slopes) = ([zero; D], [[zero; D]; D]);
+        for row in 0..Self::ROWS {
+            let (offset, k) = self.row(row);
+            let across = Self::across(factors, k);
+            let dofs = &dofs[first + offset..first + offset + B::WIDTH];
+            for c in 0..D {
+                let dof = V::splat(dofs[0][c]);
+                let (mut sum, mut slope) = (factors.value[0][0] * dof, factors.slope[0][0] * dof);
+                for i in 1..B::WIDTH {
+                    let dof = V::splat(dofs[i][c]);
+                    sum = factors.value[0][i].mul_add(dof, sum);
+                    slope = factors.slope[0][i].mul_add(dof, slope);
+                }
+                value[c] = sum.mul_add(across.value, value[c]);
+                slopes[c][0] = slope.mul_add(across.value, slopes[c][0]);
+                for a in 1..D {
+                    slopes[c][a] = sum.mul_add(across.slope[a - 1], slopes[c][a]);
+                }
+            }
+        }
+        (value, slopes)
+    }
+}
