@@ -239,8 +239,11 @@ fn compiled_in_scenes_are_the_benchmarks() {
         })
     );
     for name in Scene::builtin_names() {
-        let method = scene(name).method.method();
-        assert_eq!(method.to_string(), "bspline+taylor", "{name}");
+        let scene = scene(name);
+        // In the plane each scene has the method that serves it.
+        if scene.dimension() == 1 {
+            assert_eq!(scene.method.method().to_string(), "bspline+taylor", "{name}");
+        }
     }
 }
 

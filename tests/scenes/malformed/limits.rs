@@ -9,7 +9,7 @@ pub(super) const NOT_IN_THIS_VERSION: &[Case] = &[
     ("Poisson's ratio", Set("material.law.linear-elastic.poissons_ratio=0.3"),
      &["poissons_ratio = 0.3", "one dimension knows uniaxial strain only"]),
     ("two dimensions half told", Set("grid={min=[0, 0], max=[1, 1], cells=[4, 5]}"),
-     &["poissons_ratio is missing", "above -1 and below 0.5"]),
+     &["load.body_force = [\"-2*t\"]", "it has 1 of them and grid.min has 2"]),
     ("a cubic spline in two dimensions", Set("method.reconstruction=spline\ngrid={min=[0, 0], max=[1, 1], cells=[4, 5]}"),
      &["method.reconstruction = \"spline\"", "exists in 1-D only", "2 axes"]),
     ("a cubic basis in two dimensions", Set("method.degree=3\ngrid={min=[0, 0], max=[1, 1], cells=[4, 5]}\nmaterial.law={linear-elastic={youngs_modulus=1, poissons_ratio=0}}\nbody=[{min=[0, 0], max=[1, 1], particles_per_cell=[2, 2]}]\nboundary=[]\nload={}"),
