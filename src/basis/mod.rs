@@ -53,8 +53,7 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     /// [`BasisFamily::WIDTH`] is not zero.
     #[inline(always)]
     fn factors<V: Lanes<T>>(&self, _grid: &Grid<T, D>, _cell: &Cell<D>, unit: &[V; D]) -> Factors<V, D> {
-        let nothing = [unit.map(|unit| unit - unit); tensor::MOST_WIDTH];
-        let nothing = std::array::from_fn(|axis| std::array::from_fn(|k| nothing[k][axis]));
+        let nothing = unit.map(|_| [V::splat(T::zero()); tensor::MOST_WIDTH]);
         Factors {
             value: nothing,
             slope: nothing,

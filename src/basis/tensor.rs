@@ -95,9 +95,9 @@ pub fn factors<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>, V
     };
     for axis in 0..D {
         let (value, slope) = family.lanes(cells[axis], cell[axis] as usize, unit[axis]);
-        for k in 0..W.min(MOST_WIDTH) {
-            factors.value[axis][k] = value[k];
-            factors.slope[axis][k] = slope[k];
+        for (k, (value, slope)) in value.into_iter().zip(slope).enumerate().take(MOST_WIDTH) {
+            factors.value[axis][k] = value;
+            factors.slope[axis][k] = slope;
         }
     }
     factors

@@ -2,12 +2,17 @@
 
 #[path = "../../examples/fit_field.rs"]
 mod fit_field;
+// Its runs serve `hard_cases` too.
+#[path = "../../examples/long_runs.rs"]
+pub mod long_runs;
 #[path = "../../examples/own_basis.rs"]
 mod own_basis;
 #[path = "../../examples/own_law.rs"]
 mod own_law;
 #[path = "../../examples/speed_and_error.rs"]
 mod speed_and_error;
+#[path = "../../examples/stability_map.rs"]
+mod stability_map;
 #[path = "../../examples/sub_points.rs"]
 mod sub_points;
 #[path = "../../examples/vibrating_bar.rs"]
@@ -141,4 +146,86 @@ fn the_page_on_speed_and_error_is_complete() {
             .len();
         assert!(size < 100_000, "{picture}: {size} bytes");
     }
+}
+
+/// A short run of two methods: both tables are filled in, the run that stops says so, and nothing else of the page changes.
+#[test]
+fn a_part_of_the_page_on_long_runs_is_written_anew() {
+    use long_runs::{Case, SMOOTH, Variant, report};
+    use materialpoint::method::{Basis, ReconstructionKind};
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("long-runs");
+    let folder = materialpoint::output::Folder::create(&path).unwrap();
+    let case = Case {
+        velocity: 0.8,
+        cells: 20,
+        times: &[0.5, 1.0],
+        ..SMOOTH
+    };
+    let kinds = [ReconstructionKind::Spline, ReconstructionKind::RelaxedTaylor];
+    let variants = kinds.map(|kind| Variant::new(Basis::Linear, kind));
+    let page = "Above.\n<!-- begin smooth -->\nold\n<!-- end smooth -->\nBelow.\n";
+    let page = report(page, &case, [8, 4], &variants, 200, &folder).unwrap();
+    assert!(
+        page.starts_with("Above.\n") && page.ends_with("Below.\n"),
+        "{page}"
+    );
+    assert!(
+        page.contains("| MPM + spline | consistent | 3.") && page.contains(": volume -"),
+        "{page}"
+    );
+    assert_eq!(
+        page.matches("| MPM + relaxed TLS | constrained | 0.99").count(),
+        2,
+        "{page}"
+    );
+    let picture = std::fs::read_to_string(path.join("long-runs-smooth.svg")).unwrap();
+    assert!(picture.contains("linear, 4 per cell") && picture.contains("0.8 s"));
+}
+
+/// The pages name only pictures that are there, none too heavy for the repository.
+#[test]
+fn the_pages_on_long_runs_and_on_stability_have_their_pictures() {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    for (page, parts, count) in [
+        ("long-runs.md", &["smooth", "shocks"][..], 2),
+        ("stability.md", &[], 3),
+    ] {
+        let page = std::fs::read_to_string(docs.join(page)).unwrap();
+        for part in parts {
+            materialpoint::output::fill_in(&page, part, "").unwrap();
+        }
+        let rest = page.split("](pictures/").skip(1);
+        let pictures: Vec<&str> = rest.filter_map(|rest| rest.split(')').next()).collect();
+        assert_eq!(pictures.len(), count);
+        for picture in pictures {
+            let size = std::fs::metadata(docs.join("pictures").join(picture))
+                .unwrap()
+                .len();
+            assert!(size < 100_000, "{picture}: {size} bytes");
+        }
+    }
+}
+
+/// A coarse map: with an energy nothing grows below the prediction, published TLS does at any step.
+#[test]
+fn the_map_shows_who_is_stable_below_the_prediction() {
+    use materialpoint::method::{Basis, Method, ReconstructionKind};
+    use stability_map::{Care, Map};
+    let care = Care {
+        offsets: 4,
+        sizes: 6,
+        steps: 1000,
+    };
+    let early = |kind| {
+        let map = Map::of(Method::new(Basis::BSpline { degree: 2 }, kind), 4, care).unwrap();
+        assert_eq!((map.runs.len(), map.predicted.len()), (24, 4));
+        // Far above the prediction all grow.
+        let (above, all) = (map.early(f64::INFINITY), map.early(0.95));
+        assert!(above.0 > all.0);
+        all
+    };
+    assert_eq!(early(ReconstructionKind::Shepard).0, 0);
+    assert_eq!(early(ReconstructionKind::RelaxedTaylor).0, 0);
+    let (grow, below) = early(ReconstructionKind::Taylor);
+    assert!(2 * grow > below, "{grow} of {below}");
 }

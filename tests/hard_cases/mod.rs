@@ -11,6 +11,7 @@ mod degenerate;
 mod double_double;
 mod extreme;
 mod generated;
+mod long_runs;
 mod partly_filled;
 mod precision;
 mod weak_dof;

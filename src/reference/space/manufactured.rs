@@ -65,7 +65,7 @@ impl<const D: usize> Manufactured<D> {
     fn wave(&self, axis: usize, time: f64) -> (f64, f64) {
         let k = PI / self.length[axis];
         // Neighbouring axes swing against each other.
-        let start = if axis % 2 == 0 { 0.0 } else { PI };
+        let start = if axis.is_multiple_of(2) { 0.0 } else { PI };
         (k, k * self.wave_speed * time + start)
     }
 
