@@ -9,8 +9,8 @@ use crate::law::{
 use crate::scalar::Scalar;
 
 /// One of those laws. One type for all: another for each would multiply the steppers to compile, and they take seconds each.
-/// The price is memory: a particle has room for the longest history, in two dimensions at most four numbers more than its
-/// own.
+/// The price is memory: a particle has room for the longest history, Drucker-Prager's eight numbers in two dimensions, and a
+/// word that says whose it is.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum HistoryLaw<T> {
     NeoHookean(NeoHookean<T>),
