@@ -7,7 +7,7 @@ use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
-use materialpoint::stepper::{Conservation, FaceCondition, Forcing, Setup, Stepper};
+use materialpoint::stepper::{Conservation, FaceCondition, Forcing, Setup, Simulation, Stepper};
 use nalgebra::SVector;
 
 const CELLS: usize = 5;
@@ -22,7 +22,7 @@ const ROUND_OFF: f64 = 1e-14;
 fn bar<const D: usize, B, R>(basis: B, reconstruction: R, mass: VelocityMass) -> (Vec<f64>, Conservation<f64>)
 where
     B: BasisFamily<f64, D>,
-    R: Reconstruction<f64, D>,
+    R: Reconstruction<f64, D> + Clone,
 {
     let grid = Grid::new(SVector::zeros(), SVector::repeat(1.0), [CELLS; D]).unwrap();
     let points = lattice(&grid, grid.min(), grid.max(), [3; D]);
@@ -52,7 +52,9 @@ where
     for _ in 0..STEPS {
         stepper.step(DT, &forcing).unwrap();
     }
-    let row = stepper.particles().displacement.iter().take(3 * CELLS);
+    // In the order in which they were given, not the one that they are kept in.
+    let particles = Simulation::particles(&stepper);
+    let row = particles.displacement.iter().take(3 * CELLS);
     (row.map(|u| u[0]).collect(), stepper.diagnostics().conservation)
 }
 
