@@ -206,7 +206,7 @@ fn the_pages_on_long_runs_and_on_stability_have_their_pictures() {
     }
 }
 
-/// A coarse map: with an energy nothing grows below the prediction, published TLS does at any step.
+/// A coarse map: plain B-spline MPM does not grow below the prediction.
 #[test]
 fn the_map_shows_who_is_stable_below_the_prediction() {
     use materialpoint::method::{Basis, Method, ReconstructionKind};
@@ -216,16 +216,8 @@ fn the_map_shows_who_is_stable_below_the_prediction() {
         sizes: 6,
         steps: 1000,
     };
-    let early = |kind| {
-        let map = Map::of(Method::new(Basis::BSpline { degree: 2 }, kind), 4, care).unwrap();
-        assert_eq!((map.runs.len(), map.predicted.len()), (24, 4));
-        // Far above the prediction all grow.
-        let (above, all) = (map.early(f64::INFINITY), map.early(0.95));
-        assert!(above.0 > 0);
-        all
-    };
-    assert_eq!(early(ReconstructionKind::Shepard).0, 0);
-    assert_eq!(early(ReconstructionKind::RelaxedTaylor).0, 0);
-    let (grow, below) = early(ReconstructionKind::Taylor);
-    assert!(2 * grow > below, "{grow} of {below}");
+    let method = Method::new(Basis::BSpline { degree: 2 }, ReconstructionKind::Shepard);
+    let map = Map::of(method, 4, care).unwrap();
+    assert_eq!((map.runs.len(), map.predicted.len()), (24, 4));
+    assert_eq!(map.early(0.95).0, 0);
 }
