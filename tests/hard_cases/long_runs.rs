@@ -91,7 +91,7 @@ fn relaxed_tls_follows_the_entropy_solution() {
     }
 }
 
-/// On 40, 80 and 160 cells the energy of linear functions comes nearer to the entropy solution.
+/// On 20, 40 and 80 cells the energy of linear functions comes nearer to the entropy solution.
 #[test]
 #[ignore = "a minute; figures in docs/long-runs.md"]
 fn finer_grids_lose_what_the_entropy_solution_loses() {
