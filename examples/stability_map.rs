@@ -16,7 +16,7 @@ use materialpoint::scene::Scene;
 use materialpoint::stepper::Forcing;
 
 /// How often the energy may be the initial one before a run counts as growing.
-const GROWTH: f64 = 1e4;
+pub const GROWTH: f64 = 1e4;
 
 /// Cells of 1 m, waves of 1 m/s: a step is a share of the time in which a wave crosses a cell.
 const BAR: &str = r#"
@@ -42,13 +42,19 @@ particles_per_cell = [2]
 velocity = ["1e-9*sin(1e5*x^2)"]
 "#;
 
-fn bar(method: Method, per_cell: usize, offset: f64) -> Result<Scene, Box<dyn Error>> {
+/// The bar, shifted by `offset` cells.
+pub fn bar(method: Method, per_cell: usize, offset: f64) -> Result<Scene, Box<dyn Error>> {
     let set = [
         format!("body.0.min=[{:?}]", 1.0 + offset),
         format!("body.0.max=[{:?}]", 9.0 + offset),
         format!("body.0.particles_per_cell=[{per_cell}]"),
     ];
     Ok(Scene::from_toml(BAR, &set)?.with_method(method))
+}
+
+/// One of `n` offsets; no particle of it lies on a cell edge, where linear functions have two slopes.
+pub fn offset(k: usize, n: usize) -> f64 {
+    (k as f64 + 0.31) / n as f64
 }
 
 /// How finely is looked, and for how long.
@@ -90,11 +96,11 @@ pub struct Map {
 }
 
 impl Map {
-    /// Makes the map. No particle lies on a cell edge, where linear functions have two slopes.
+    /// Makes the map.
     pub fn of(method: Method, per_cell: usize, care: Care) -> Result<Self, Box<dyn Error>> {
         let mut map = Self::default();
         for k in 0..care.offsets {
-            let offset = (k as f64 + 0.31) / care.offsets as f64;
+            let offset = offset(k, care.offsets);
             let scene = bar(method, per_cell, offset)?;
             let critical = critical_step(&scene)?.ok_or("nothing resists")?;
             map.predicted.push((offset, critical.step));

@@ -10,7 +10,7 @@ use crate::field::Field;
 use crate::grid::Cell;
 use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
-use crate::taylor::{CellFit, DEFAULT_TOLERANCE, Gram, taylor_functions};
+use crate::taylor::{CellFit, Gram, default_tolerance, taylor_functions};
 
 /// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor functions through
 /// the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3 dimensions.
@@ -96,14 +96,14 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
     pub fn with_gauss_points(n: usize) -> Self {
         Self {
             rule: GaussRule::new(n),
-            tolerance: T::lit(DEFAULT_TOLERANCE),
+            tolerance: default_tolerance(D),
             cells: Vec::new(),
             reduced: 0,
         }
     }
 
     /// Drops a function where, on a cell's particles, less than the share `tolerance` of it is left after the functions
-    /// before it ([`DEFAULT_TOLERANCE`]).
+    /// before it ([`default_tolerance`]).
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: T) -> Self {
         self.tolerance = tolerance;

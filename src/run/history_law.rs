@@ -36,6 +36,32 @@ pub(super) enum History<T, const D: usize> {
 /// Of each law of the enum its history. That of another law, which no particle has, counts as none.
 macro_rules! each_law {
     ($($law:ident: $history:ident),+) => {
+        impl<T: Scalar> HistoryLaw<T> {
+            /// Carries stress and state by the law that it is, over a time if it is told.
+            #[inline(always)]
+            fn carry<const D: usize>(
+                &self,
+                dt: Option<T>,
+                increment: &SMatrix<T, D, D>,
+                stress: &mut SMatrix<T, D, D>,
+                state: &mut History<T, D>,
+            ) {
+                match self {
+                    $(Self::$law(law) => {
+                        let mut own = match state {
+                            History::$history(own) => *own,
+                            _ => Default::default(),
+                        };
+                        match dt {
+                            Some(dt) => law.update_over(dt, increment, stress, &mut own),
+                            None => law.update(increment, stress, &mut own),
+                        }
+                        *state = History::$history(own);
+                    })+
+                }
+            }
+        }
+
         impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for HistoryLaw<T> {
             type State = History<T, D>;
 
@@ -51,16 +77,7 @@ macro_rules! each_law {
                 stress: &mut SMatrix<T, D, D>,
                 state: &mut Self::State,
             ) {
-                match self {
-                    $(Self::$law(law) => {
-                        let mut own = match state {
-                            History::$history(own) => *own,
-                            _ => Default::default(),
-                        };
-                        law.update(increment, stress, &mut own);
-                        *state = History::$history(own);
-                    })+
-                }
+                self.carry(None, increment, stress, state);
             }
 
             #[inline(always)]
@@ -71,16 +88,7 @@ macro_rules! each_law {
                 stress: &mut SMatrix<T, D, D>,
                 state: &mut Self::State,
             ) {
-                match self {
-                    $(Self::$law(law) => {
-                        let mut own = match state {
-                            History::$history(own) => *own,
-                            _ => Default::default(),
-                        };
-                        law.update_over(dt, increment, stress, &mut own);
-                        *state = History::$history(own);
-                    })+
-                }
+                self.carry(Some(dt), increment, stress, state);
             }
 
             fn start(&self, stress: &SMatrix<T, D, D>, off_plane: Option<T>) -> Option<Self::State> {

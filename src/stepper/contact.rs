@@ -10,7 +10,7 @@ use nalgebra::SVector;
 
 use super::{FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
-use crate::grid::{Face, Side};
+use crate::grid::{Cell, Face, Grid, Side};
 use crate::law::ConstitutiveLaw;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
@@ -29,7 +29,7 @@ where
         if frictional(forcing).next().is_none() {
             return;
         }
-        self.map_momentum_before();
+        self.map_momentum_before(forcing);
         for (face, coefficient) in frictional(forcing) {
             for &dof in face_dofs(&self.face_dofs, face) {
                 let (dof, mass) = (dof as usize, self.dofs.mass[dof as usize]);
@@ -52,13 +52,19 @@ where
         }
     }
 
-    /// Momentum of the particles as they are, at the DOFs; the array is the one that the momentum after their update will fill.
-    fn map_momentum_before(&mut self) {
+    /// Momentum of the particles as they are, at the DOFs on the walls; the array is the one that the momentum after their update
+    /// will fill.
+    fn map_momentum_before(&mut self, forcing: &Forcing<T, D>) {
         let (basis, grid, momentum) = (&self.basis, &self.grid, &mut self.dofs.velocity);
         momentum.fill(SVector::zeros());
         let particles = &self.particles;
         let bodies = particles.velocity.iter().zip(&particles.mass);
         for ((x, cell), (velocity, &mass)) in particles.position.iter().zip(self.bins.cells()).zip(bodies) {
+            // Functions of further cells have no value at the wall.
+            let reaches = |(face, _)| cells_to(grid, cell, face) <= basis.degree();
+            if !frictional(forcing).any(reaches) {
+                continue;
+            }
             let amount = velocity * mass;
             basis.for_each(grid, cell, x, |i, phi, _| momentum[i] += amount * phi);
         }
@@ -71,6 +77,15 @@ fn frictional<T: Scalar, const D: usize>(forcing: &Forcing<T, D>) -> impl Iterat
         FaceCondition::Frictional { coefficient } => Some((face, *coefficient)),
         _ => None,
     })
+}
+
+/// Cells between `cell` and a face.
+fn cells_to<T: Scalar, const D: usize>(grid: &Grid<T, D>, cell: &Cell<D>, face: Face) -> usize {
+    let (index, count) = (cell[face.axis] as usize, grid.cells()[face.axis]);
+    match face.side {
+        Side::Min => index,
+        Side::Max => count - 1 - index,
+    }
 }
 
 /// DOFs of a face in the stepper's lists.

@@ -55,8 +55,8 @@ impl Order {
         !self.numbers.is_empty() && self.crossings * CHANGED >= self.numbers.len()
     }
 
-    /// Puts the particles in the order of their cells; those of a cell stay in the order in which they are. Returns the
-    /// place that each one of before is at now, or nothing if none has moved.
+    /// Puts the particles in the order of their cells; those of a cell stay in the order in which they are. Returns whether any
+    /// has moved; if so, `moves` was told the place that each is at now.
     pub(super) fn restore<T: Scalar, const D: usize, S: Copy, P: Copy>(
         &mut self,
         grid: &Grid<T, D>,

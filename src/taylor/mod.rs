@@ -14,5 +14,5 @@ mod fit;
 mod shift;
 
 pub use basis::taylor_functions;
-pub use fit::{CellFit, DEFAULT_TOLERANCE, Gram};
+pub use fit::{CellFit, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE_IN_SPACE, Gram, default_tolerance};
 pub(crate) use shift::shift_sums;

@@ -6,10 +6,12 @@ use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
 use materialpoint::mass::VelocityMass;
-use materialpoint::method::{Method, MethodVisitor};
+use materialpoint::method::{Method, MethodVisitor, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, OnePhase};
 use materialpoint::reconstruction::Reconstruction;
+use materialpoint::run::simulation_in;
+use materialpoint::scene::Scene;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
 use nalgebra::vector;
 
@@ -102,4 +104,39 @@ fn no_step_allocates() {
             assert!(copy.count_total >= 7);
         }
     }
+}
+
+/// In the plane windows and the particles' order change too; 9216 particles make several spans. On one thread: a pool of several has
+/// a queue of its own, which takes memory now and then.
+#[test]
+fn no_step_in_the_plane_allocates() {
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for (cells, steps) in [(8, 200), (32, 40)] {
+        for method in Method::all_in(2, 1) {
+            // Its matrix makes many cells slow.
+            if cells == 8 || method.reconstruction != ReconstructionKind::RelaxedTaylor {
+                let count = one_thread.install(|| allocations_in_the_plane(method, cells, steps));
+                assert_eq!(count, 0, "{method} {cells}");
+            }
+        }
+    }
+}
+
+fn allocations_in_the_plane(method: Method, cells: usize, steps: usize) -> u64 {
+    let scene = Scene::from_toml(Scene::builtin("manufactured").unwrap(), &[]).unwrap();
+    let mut scene = scene.with_cells(cells).with_method(method);
+    if method.reconstruction != ReconstructionKind::RelaxedTaylor {
+        scene.method.velocity_mass = VelocityMass::Lumped;
+    }
+    let forcing = Face::all::<2>().fold(Forcing::none(), |forcing, face| {
+        forcing.with_face(face, FaceCondition::roller(face.axis))
+    });
+    let mut simulation = simulation_in::<2>(&scene).unwrap();
+    let counted = allocation_counter::measure(|| {
+        for _ in 0..steps {
+            simulation.step(2e-5, &forcing).unwrap();
+        }
+    });
+    assert!(simulation.diagnostics().grid_crossings > 50, "{method} {cells}");
+    counted.count_total
 }

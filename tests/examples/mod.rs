@@ -2,7 +2,7 @@
 
 #[path = "../../examples/fit_field.rs"]
 mod fit_field;
-// Its runs serve `hard_cases` too.
+// Its runs serve `hard_cases` too, and so does the bar of `stability_map`.
 #[path = "../../examples/long_runs.rs"]
 pub mod long_runs;
 #[path = "../../examples/own_basis.rs"]
@@ -12,7 +12,7 @@ mod own_law;
 #[path = "../../examples/speed_and_error.rs"]
 mod speed_and_error;
 #[path = "../../examples/stability_map.rs"]
-mod stability_map;
+pub mod stability_map;
 #[path = "../../examples/sub_points.rs"]
 mod sub_points;
 #[path = "../../examples/vibrating_bar.rs"]
@@ -206,18 +206,27 @@ fn the_pages_on_long_runs_and_on_stability_have_their_pictures() {
     }
 }
 
-/// A coarse map: plain B-spline MPM does not grow below the prediction.
+/// A coarse map: with an energy nothing grows below the prediction, published TLS does at any step.
 #[test]
 fn the_map_shows_who_is_stable_below_the_prediction() {
     use materialpoint::method::{Basis, Method, ReconstructionKind};
     use stability_map::{Care, Map};
+    // Fine enough for steps above 2.3, the largest prediction of plain B-splines.
     let care = Care {
         offsets: 4,
-        sizes: 6,
+        sizes: 16,
         steps: 1000,
     };
-    let method = Method::new(Basis::BSpline { degree: 2 }, ReconstructionKind::Shepard);
-    let map = Map::of(method, 4, care).unwrap();
-    assert_eq!((map.runs.len(), map.predicted.len()), (24, 4));
-    assert_eq!(map.early(0.95).0, 0);
+    let early = |kind| {
+        let map = Map::of(Method::new(Basis::BSpline { degree: 2 }, kind), 4, care).unwrap();
+        assert_eq!((map.runs.len(), map.predicted.len()), (64, 4));
+        // Far above the prediction all grow.
+        let (above, all) = (map.early(f64::INFINITY), map.early(0.95));
+        assert!(above.0 > all.0, "{kind:?}: {above:?} {all:?}");
+        all
+    };
+    assert_eq!(early(ReconstructionKind::Shepard).0, 0);
+    assert_eq!(early(ReconstructionKind::RelaxedTaylor).0, 0);
+    let (grow, below) = early(ReconstructionKind::Taylor);
+    assert!(2 * grow > below, "{grow} of {below}");
 }

@@ -24,46 +24,13 @@ use materialpoint::run::{critical_step, simulation};
 use materialpoint::scene::Scene;
 use materialpoint::stepper::Forcing;
 
-const GROWTH: f64 = 1e4;
+use crate::examples::stability_map::{self, GROWTH, offset};
+
 const PER_CELL: [usize; 4] = [2, 4, 8, 16];
 
-/// Cells of 1 m, waves of 1 m/s.
-const BAR: &str = r#"
-title = "A free bar"
-[grid]
-min = [0]
-max = [11]
-cells = [11]
-[time]
-step = 1
-end = 1
-[method]
-basis = "linear"
-reconstruction = "shepard"
-[material]
-strain = "small"
-law.linear-elastic = { youngs_modulus = 1 }
-density = 1
-[[body]]
-min = [1]
-max = [9]
-particles_per_cell = [2]
-velocity = ["1e-9*sin(1e5*x^2)"]
-"#;
-
-/// The bar, shifted by `offset` cells.
+/// The bar of the maps in `docs/stability.md`, shifted by `offset` cells.
 fn bar(method: Method, per_cell: usize, offset: f64) -> Scene {
-    let set = [
-        format!("body.0.min=[{:?}]", 1.0 + offset),
-        format!("body.0.max=[{:?}]", 9.0 + offset),
-        format!("body.0.particles_per_cell=[{per_cell}]"),
-    ];
-    Scene::from_toml(BAR, &set).unwrap().with_method(method)
-}
-
-/// One of `n` offsets; no particle of it lies on a cell edge.
-fn offset(k: usize, n: usize) -> f64 {
-    (k as f64 + 0.31) / n as f64
+    stability_map::bar(method, per_cell, offset).unwrap()
 }
 
 /// Whether this many steps of this size leave the energy bounded.

@@ -4,6 +4,7 @@
 //! allowed.
 
 mod limits;
+mod space;
 mod text;
 mod two_phase;
 mod values;
@@ -178,6 +179,12 @@ fn what_a_later_version_may_do() {
 fn a_scene_that_is_not_its_reference() {
     check(builtin("vibrating-bar-large"), limits::BAR);
     check(builtin("column-compaction"), limits::COLUMN);
+}
+
+#[test]
+fn scenes_in_the_plane() {
+    check(builtin("manufactured"), space::WAVES);
+    check(builtin("granular-column"), space::SAND);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use super::taylor::local;
 use super::{Cloud, Point, Reconstruction, Shepard};
 use crate::field::Field;
 use crate::scalar::Scalar;
-use crate::taylor::{CellFit, DEFAULT_TOLERANCE, shift_sums, taylor_functions};
+use crate::taylor::{CellFit, default_tolerance, shift_sums, taylor_functions};
 use cells::RelaxedCell;
 
 /// Wave speeds in neighbouring cells that differ by more than this factor are those of two materials.
@@ -84,7 +84,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     pub fn for_degree(degree: usize) -> Self {
         Self {
             rule: GaussRule::new(GaussRule::<T, D, NB>::points_for_degree(degree)),
-            tolerance: T::lit(DEFAULT_TOLERANCE),
+            tolerance: default_tolerance(D),
             relaxation: Relaxation::default(),
             cells: Vec::new(),
             sums: Vec::new(),

@@ -81,7 +81,7 @@ fn bar(scene: &Scene, velocity: f64) -> Result<(), SceneError> {
             problem,
         )
     };
-    let body = the_body(scene).ok_or_else(|| refuse("it needs exactly one [[body]]"))?;
+    let body = the_body(scene).ok_or_else(|| refuse("it needs exactly one [[body]], without inside"))?;
     if !(is_fixed(scene, BASE) && is_fixed(scene, TOP)) {
         return Err(refuse("it needs fixed = true at x-min and at x-max"));
     }
@@ -109,7 +109,7 @@ fn bar(scene: &Scene, velocity: f64) -> Result<(), SceneError> {
 fn column(scene: &Scene, body_force: f64, ramp: f64, against: Against) -> Result<(), SceneError> {
     let shown = format!("{{ body_force = {body_force:?}, ramp = {ramp:?} }}");
     let refuse = |problem: &str| refuse("reference.column-compaction", &shown, problem);
-    let body = the_body(scene).ok_or_else(|| refuse("it needs exactly one [[body]]"))?;
+    let body = the_body(scene).ok_or_else(|| refuse("it needs exactly one [[body]], without inside"))?;
     if !is_fixed(scene, BASE) || scene.boundaries.len() > 1 {
         return Err(refuse(
             "it needs fixed = true at x-min and no [[boundary]] at x-max",
@@ -175,9 +175,10 @@ fn refuse(key: &str, value: &str, problem: &str) -> SceneError {
     }
 }
 
+/// The only body, if it is the whole of its box.
 fn the_body(scene: &Scene) -> Option<&Body> {
     match scene.bodies.as_slice() {
-        [body] => Some(body),
+        [body] if body.inside.is_none() => Some(body),
         _ => None,
     }
 }

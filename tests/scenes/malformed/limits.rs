@@ -20,6 +20,8 @@ pub(super) const NOT_IN_THIS_VERSION: &[Case] = &[
 /// Edits of the compiled-in bar.
 #[rustfmt::skip]
 pub(super) const BAR: &[Case] = &[
+    ("a bar with a hole", Set("body.0.inside=\"abs(x - 0.5) - 0.1\""), &["reference.vibrating-bar", "exactly one [[body]]"]),
+    ("a law of the plane", Set("material.law={von-mises={}}"), &["material.law.von-mises", "two and three dimensions"]),
     ("two bodies", Replace("[[body]] ", "[[body]]\nmin = [0.1]\nmax = [0.2]\nparticles_per_cell = [1]\n[[body]]\n"),
      &["body.1.min = [0.0]", "overlaps body.0"]),
     ("a free end", Set("boundary=[{face=\"x-min\", fixed=true}]"), &["reference.vibrating-bar = { velocity = 0.8 }", "x-min and at x-max"]),

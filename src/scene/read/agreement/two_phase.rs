@@ -133,7 +133,7 @@ fn small_strain(scene: &Scene) -> Result<(), Problem> {
 }
 
 fn one_body(scene: &Scene) -> Result<&Body, Problem> {
-    the_body(scene).ok_or_else(|| "it needs exactly one [[body]]".into())
+    the_body(scene).ok_or_else(|| "it needs exactly one [[body]], without inside".into())
 }
 
 fn standing(scene: &Scene, body: &Body) -> Result<(), Problem> {
