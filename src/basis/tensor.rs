@@ -89,13 +89,21 @@ pub fn factors<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>, V
     unit: &[V; D],
 ) -> Factors<V, D> {
     let (cells, zero) = (grid.cells(), V::splat(T::zero()));
-    // One loop with a bound that is known: iterators over the packs by value would go through memory, at half the speed of a step.
-    let padded = |packs: [V; W]| std::array::from_fn(|k| if k < W { packs[k] } else { zero });
-    let rows: [_; D] = std::array::from_fn(|axis| family.lanes(cells[axis], cell[axis] as usize, unit[axis]));
-    Factors {
-        value: rows.map(|(value, _)| padded(value)),
-        slope: rows.map(|(_, slope)| padded(slope)),
+    let mut factors = Factors {
+        value: [[zero; MOST_WIDTH]; D],
+        slope: [[zero; MOST_WIDTH]; D],
+    };
+    for axis in 0..D {
+        let (value, slope) = family.lanes(cells[axis], cell[axis] as usize, unit[axis]);
+        // Copies of slices or iterators over the packs go through memory: measured at a fifth to three quarters of the speed of a
+        // whole step.
+        #[allow(clippy::manual_memcpy)]
+        for k in 0..W.min(MOST_WIDTH) {
+            factors.value[axis][k] = value[k];
+            factors.slope[axis][k] = slope[k];
+        }
     }
+    factors
 }
 
 /// Point of `dof` in the product of `family` with itself.

@@ -32,15 +32,19 @@ where
     summary
 }
 
-fn plane(basis: Basis, reconstruction: ReconstructionKind, cells: usize) -> f64 {
+fn plane(basis: Basis, reconstruction: ReconstructionKind, cells: usize, set: &[&str]) -> f64 {
     let text = Scene::builtin("manufactured").unwrap();
     let method = Method::new(basis, reconstruction);
-    summary::<2>(text, method, cells, &[]).errors["stress"].relative_l2
+    summary::<2>(text, method, cells, set).errors["stress"].relative_l2
+}
+
+fn check(basis: Basis, reconstruction: ReconstructionKind, expected: [f64; 2]) {
+    check_with(basis, reconstruction, &[], expected);
 }
 
 #[track_caller]
-fn check(basis: Basis, reconstruction: ReconstructionKind, expected: [f64; 2]) {
-    let found = [8, 16].map(|cells| plane(basis, reconstruction, cells));
+fn check_with(basis: Basis, reconstruction: ReconstructionKind, set: &[&str], expected: [f64; 2]) {
+    let found = [8, 16].map(|cells| plane(basis, reconstruction, cells, set));
     for (found, expected) in found.into_iter().zip(expected) {
         assert!(
             (found / expected - 1.0).abs() < 0.1,
@@ -68,6 +72,18 @@ fn relaxed_taylor_is_the_most_accurate_with_every_basis() {
     check(LINEAR, RelaxedTaylor, [6.98e-2, 2.90e-2]);
     check(DUAL_DOMAIN, RelaxedTaylor, [3.57e-2, 1.31e-2]);
     check(BSPLINE, RelaxedTaylor, [5.92e-3, 1.89e-3]);
+}
+
+/// Fits of irregular layouts that kept every function with 2 % left did not converge, or the run stopped.
+#[test]
+fn jittered_particles_converge_too() {
+    let jitter = ["body.0.jitter=0.6"];
+    check_with(LINEAR, Taylor, &jitter, [9.65e-2, 4.84e-2]);
+    check_with(BSPLINE, Taylor, &jitter, [9.10e-2, 4.22e-2]);
+    check_with(LINEAR, RelaxedTaylor, &jitter, [8.71e-2, 3.23e-2]);
+    check_with(BSPLINE, RelaxedTaylor, &jitter, [1.82e-2, 6.0e-3]);
+    // On 32 cells the error with 2 % was 0.27.
+    assert!(plane(LINEAR, Taylor, 32, &jitter) < 4e-2);
 }
 
 /// Measured from 16 to 32 cells 1.86; a prototype stalled at 7e-3.
