@@ -90,8 +90,8 @@ fn jittered_particles_converge_too() {
 #[test]
 fn relaxed_taylor_with_b_splines_does_not_stall() {
     let (coarse, fine) = (
-        plane(BSPLINE, RelaxedTaylor, 16),
-        plane(BSPLINE, RelaxedTaylor, 32),
+        plane(BSPLINE, RelaxedTaylor, 16, &[]),
+        plane(BSPLINE, RelaxedTaylor, 32, &[]),
     );
     let order = (coarse / fine).log2();
     assert!((1.7..2.1).contains(&order), "{order}");
