@@ -6,7 +6,7 @@
 //! dual numbers for instance, they are [`Four`], four scalars after one another: the same code and the same result.
 
 use std::any::Any;
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 use wide::{f32x4, f64x4};
 
@@ -16,7 +16,9 @@ use crate::scalar::Scalar;
 pub const LANES: usize = 4;
 
 /// [`LANES`] numbers of type `T` that are computed with side by side.
-pub trait Lanes<T>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Send {
+pub trait Lanes<T>:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Send
+{
     /// The given ones.
     fn new(values: [T; LANES]) -> Self;
 
@@ -34,6 +36,9 @@ pub trait Lanes<T>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output 
 
     /// Sizes.
     fn abs(self) -> Self;
+
+    /// One where the number is greater than the other's, zero elsewhere.
+    fn above(self, other: Self) -> Self;
 
     /// Sums over the lanes of four packs at once.
     fn sums(packs: [Self; 4]) -> [T; 4];
@@ -104,6 +109,15 @@ impl<T: Scalar> Mul for Four<T> {
     }
 }
 
+impl<T: Scalar> Div for Four<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.with(other, |a, b| a / b)
+    }
+}
+
 impl<T: Scalar> Lanes<T> for Four<T> {
     #[inline(always)]
     fn new(values: [T; LANES]) -> Self {
@@ -133,6 +147,11 @@ impl<T: Scalar> Lanes<T> for Four<T> {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.map(nalgebra::ComplexField::abs))
+    }
+
+    #[inline(always)]
+    fn above(self, other: Self) -> Self {
+        self.with(other, |a, b| if a > b { T::one() } else { T::zero() })
     }
 
     #[inline(always)]
@@ -177,6 +196,11 @@ macro_rules! vector {
             }
 
             #[inline(always)]
+            fn above(self, other: Self) -> Self {
+                self.simd_gt(other) & Self::splat(1.0)
+            }
+
+            #[inline(always)]
             fn sums(packs: [Self; 4]) -> [T; 4] {
                 let [a, b, c, d] = Self::transpose(packs);
                 ((a + b) + (c + d)).array()
@@ -199,6 +223,10 @@ mod tests {
         assert_eq!(
             a.mul_add(two, a - two).array(),
             [-0.5, -8.0, 7.0, 10.0].map(T::lit)
+        );
+        assert_eq!(
+            (a / two).above(two - two).array(),
+            [1.0, 0.0, 1.0, 1.0].map(T::lit)
         );
         assert_eq!((a.abs() * two).sqrt().array()[1], T::lit(2.0));
         assert_eq!(

@@ -29,7 +29,7 @@ use crate::scalar::Scalar;
 pub const DEFAULT_TOLERANCE: f64 = 0.02;
 
 /// Share of a function's square sum that must be independent for the Gram matrix to be trusted.
-const GRAM_SHARE: f64 = 1e-2;
+pub(super) const GRAM_SHARE: f64 = 1e-2;
 
 /// Least-squares fit of fields in one cell, prepared for a set of points.
 #[derive(Clone, Copy, Debug)]

@@ -11,8 +11,10 @@
 
 mod basis;
 mod fit;
+mod four;
 mod shift;
 
 pub use basis::taylor_functions;
 pub use fit::{CellFit, DEFAULT_TOLERANCE, Gram};
+pub(crate) use four::{FourSums, MOST_COMPONENTS, taylor_lanes};
 pub(crate) use shift::shift_sums;
