@@ -7,7 +7,7 @@
 //! the rounding that [`Lanes::mul_add`] spares.
 
 use std::any::Any;
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 use wide::{f32x4, f64x4};
 
@@ -17,7 +17,9 @@ use crate::scalar::Scalar;
 pub const LANES: usize = 4;
 
 /// [`LANES`] numbers of type `T` that are computed with side by side.
-pub trait Lanes<T>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Send {
+pub trait Lanes<T>:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Send
+{
     /// The given ones.
     fn new(values: [T; LANES]) -> Self;
 
@@ -35,6 +37,9 @@ pub trait Lanes<T>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output 
 
     /// Sizes.
     fn abs(self) -> Self;
+
+    /// One where the number is greater than the other's, zero elsewhere.
+    fn above(self, other: Self) -> Self;
 
     /// Sums over the lanes of four packs at once.
     fn sums(packs: [Self; 4]) -> [T; 4];
@@ -105,6 +110,15 @@ impl<T: Scalar> Mul for Four<T> {
     }
 }
 
+impl<T: Scalar> Div for Four<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.with(other, |a, b| a / b)
+    }
+}
+
 impl<T: Scalar> Lanes<T> for Four<T> {
     #[inline(always)]
     fn new(values: [T; LANES]) -> Self {
@@ -134,6 +148,11 @@ impl<T: Scalar> Lanes<T> for Four<T> {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.map(nalgebra::ComplexField::abs))
+    }
+
+    #[inline(always)]
+    fn above(self, other: Self) -> Self {
+        self.with(other, |a, b| if a > b { T::one() } else { T::zero() })
     }
 
     #[inline(always)]
@@ -178,6 +197,11 @@ macro_rules! vector {
             }
 
             #[inline(always)]
+            fn above(self, other: Self) -> Self {
+                self.simd_gt(other) & Self::splat(1.0)
+            }
+
+            #[inline(always)]
             fn sums(packs: [Self; 4]) -> [T; 4] {
                 let [a, b, c, d] = Self::transpose(packs);
                 ((a + b) + (c + d)).array()
@@ -200,6 +224,10 @@ mod tests {
         assert_eq!(
             a.mul_add(two, a - two).array(),
             [-0.5, -8.0, 7.0, 10.0].map(T::lit)
+        );
+        assert_eq!(
+            (a / two).above(V::splat(T::zero())).array(),
+            [1.0, 0.0, 1.0, 1.0].map(T::lit)
         );
         assert_eq!((a.abs() * two).sqrt().array()[1], T::lit(2.0));
         assert_eq!(

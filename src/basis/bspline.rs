@@ -139,7 +139,7 @@ macro_rules! degree {
                 }
             }
 
-            const CONSECUTIVE: bool = true;
+            const UNIFORM: bool = true;
 
             #[inline(always)]
             fn lanes<V: Lanes<T>>(&self, cells: usize, cell: usize, unit: V) -> ([V; $width], [V; $width]) {

@@ -100,6 +100,7 @@ impl<T: Scalar> AxisFamily<T, 4> for DualDomain {
 
 impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
     const TAKES_IN_CELLS: bool = true;
+    const FIXED_POINTS_ALIKE: bool = false;
 
     fn take_in(&mut self, grid: &Grid<T, D>, bins: &Bins<D>) {
         self.missing.clear();

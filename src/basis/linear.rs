@@ -23,7 +23,7 @@ impl<T: Scalar> AxisFamily<T, 2> for Linear {
         }
     }
 
-    const CONSECUTIVE: bool = true;
+    const UNIFORM: bool = true;
 
     #[inline(always)]
     fn lanes<V: Lanes<T>>(&self, _cells: usize, _cell: usize, unit: V) -> ([V; 2], [V; 2]) {

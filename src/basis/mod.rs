@@ -13,6 +13,7 @@ pub use bspline::BSpline;
 pub use dual_domain::DualDomain;
 pub use interpolant::Interpolant;
 pub use linear::Linear;
+pub(crate) use tensor::MOST_WIDTH;
 pub use tensor::{AxisFamily, Factors, Row};
 
 use std::ops::Range;
@@ -45,9 +46,13 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     }
 
     /// Number of functions along each axis of a cell, if a cell's functions are the products of [`BasisFamily::factors`]: those
-    /// of DOFs that follow each other along every axis, from the cell's own index on. Zero if they are not, or nobody has said
+    /// of DOFs that follow each other along every axis, from the cell's own index on, the same in all cells that have as many
+    /// cells on every side. Zero if they are not, or nobody has said
     /// so; four points of a cell are then not computed at once.
     const WIDTH: usize = 0;
+
+    /// Whether [`BasisFamily::for_each_at_fixed_point`] visits what [`BasisFamily::for_each`] does.
+    const FIXED_POINTS_ALIKE: bool = true;
 
     /// The functions of `cell` at several of its points, whose coordinates from 0 to 1 in the cell are `unit`. Only asked where
     /// [`BasisFamily::WIDTH`] is not zero.

@@ -42,11 +42,12 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
     /// than `W` functions exist, the spare entries repeat a DOF with zero value and slope.
     fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, W>;
 
-    /// Whether the DOFs of cell `i` are `i, i + 1, ... i + W - 1` everywhere. Then, in two and three dimensions, a step computes
-    /// with four particles of a cell at once.
-    const CONSECUTIVE: bool = false;
+    /// Whether the DOFs of cell `i` are `i, i + 1, ... i + W - 1` everywhere, and the functions of all cells that have `W` or more
+    /// cells on both sides the same. Then, in two and three dimensions, a step computes with four particles of a cell, or with
+    /// four cells, at once.
+    const UNIFORM: bool = false;
 
-    /// Values and slopes of [`AxisFamily::row`] at several points of a cell; only asked where [`AxisFamily::CONSECUTIVE`].
+    /// Values and slopes of [`AxisFamily::row`] at several points of a cell; only asked where [`AxisFamily::UNIFORM`].
     /// Unless told otherwise one point after the other.
     #[inline(always)]
     fn lanes<V: Lanes<T>>(&self, cells: usize, cell: usize, unit: V) -> ([V; W], [V; W]) {
@@ -63,7 +64,7 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
 
 /// [`BasisFamily::WIDTH`] of the product of a family with itself.
 pub const fn width_in_lanes<T: Scalar, const W: usize, A: AxisFamily<T, W>>() -> usize {
-    if A::CONSECUTIVE && W <= MOST_WIDTH { W } else { 0 }
+    if A::UNIFORM && W <= MOST_WIDTH { W } else { 0 }
 }
 
 /// [`AxisFamily::lanes`] by way of [`AxisFamily::row`].
@@ -288,6 +289,8 @@ macro_rules! tensor_product_family {
             }
 
             $(
+                const FIXED_POINTS_ALIKE: bool = false;
+
                 #[inline(always)]
                 fn for_each_at_fixed_point(
                     &self,

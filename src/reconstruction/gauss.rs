@@ -4,9 +4,10 @@ use nalgebra::SVector;
 
 use super::{Patch, Point};
 use crate::field::Field;
+use crate::lanes::Lanes;
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
-use crate::taylor::taylor_functions;
+use crate::taylor::{MOST_COMPONENTS, taylor_functions};
 
 /// Gauss-Legendre rule of the reference cell with the Taylor functions at its points.
 #[derive(Clone, Debug)]
@@ -43,6 +44,37 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
     /// points would make a cubic basis lose an order in the stress, because they integrate its mass matrix too crudely.
     pub(super) fn points_for_degree(degree: usize) -> usize {
         if degree > 2 { degree + 1 } else { 2 }
+    }
+
+    /// Local coordinates of the points along an axis.
+    pub(super) fn line(&self) -> impl Iterator<Item = T> {
+        let beyond = |node: &&Node<T, D, NB>| (1..D).all(|axis| node.s[axis] == self.0[0].s[axis]);
+        self.0.iter().take_while(beyond).map(|node| node.s[0])
+    }
+
+    /// Streams polynomials over four cells of the given volume: the number of the point, then the values times the weight.
+    #[inline(always)]
+    pub(super) fn emit_lanes<V: Lanes<T>>(
+        &self,
+        volume: T,
+        coefficients: &[[V; MOST_COMPONENTS]; NB],
+        components: usize,
+        sink: &mut impl FnMut(usize, &[V; MOST_COMPONENTS]),
+    ) {
+        for (number, node) in self.0.iter().enumerate() {
+            let weight = V::splat(volume * node.share);
+            let mut values = [V::splat(T::zero()); MOST_COMPONENTS];
+            for k in (0..NB).rev() {
+                let psi = V::splat(node.psi[k]);
+                for q in 0..components {
+                    values[q] = psi.mul_add(coefficients[k][q], values[q]);
+                }
+            }
+            for q in 0..components {
+                values[q] = values[q] * weight;
+            }
+            sink(number, &values);
+        }
     }
 
     /// Streams the polynomial with the given coefficients in the functions of `patch`, over `patch`.

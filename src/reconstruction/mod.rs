@@ -26,8 +26,10 @@ use nalgebra::SVector;
 use crate::error::SetupError;
 use crate::field::Field;
 use crate::grid::{Cell, Grid};
+use crate::lanes::{LANES, Lanes};
 use crate::particles::Bins;
 use crate::scalar::Scalar;
+use crate::taylor::MOST_COMPONENTS;
 
 /// Where the particles are: all that a reconstruction needs to know besides the values.
 #[derive(Clone, Copy, Debug)]
@@ -92,6 +94,15 @@ impl<'a, T: Scalar, const D: usize> Cloud<'a, T, D> {
     }
 }
 
+/// What became of four cells that were streamed at once.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Four {
+    /// Whether a cell could not be.
+    pub hard: [bool; LANES],
+    /// How many were fitted without the full set of functions.
+    pub reduced: usize,
+}
+
 /// A point of the stream.
 #[derive(Clone, Copy, Debug)]
 pub struct Point<T, const D: usize> {
@@ -131,6 +142,9 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
 
     /// Whether [`Reconstruction::relax`] does anything.
     const RELAXES: bool = false;
+
+    /// Whether four cells can be streamed at once without [`Reconstruction::prepare`] ([`Reconstruction::integrate_four`]).
+    const BY_FOUR: bool = false;
 
     /// Takes in the geometry. Every field streamed until the next call shares it.
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>);
@@ -172,6 +186,40 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         _amount: impl Fn(usize) -> Q,
         _sink: impl FnMut(&Point<T, D>, Q),
     ) {
+    }
+
+    /// Coordinates in a cell, each in `[-1, 1]`, of the points along an axis whose products [`Reconstruction::integrate_four`]
+    /// streams, axis 0 fastest.
+    fn line(&self) -> impl Iterator<Item = T> {
+        std::iter::empty()
+    }
+
+    /// What [`Reconstruction::integrate_conserved`] streams, if `conserve`, or else [`Reconstruction::integrate`], in up to four
+    /// `cells`, places in the list of occupied ones: one cell in each lane, the number of the point and the components of the
+    /// value. `value` is that of a particle: in the first case its density. Only asked where [`Reconstruction::BY_FOUR`] and no
+    /// cell is cut; returns in which cells it failed, so that they must be streamed by [`Reconstruction::integrate_hard`].
+    fn integrate_four<V: Lanes<T>, Q: Field<T>>(
+        &self,
+        _cloud: &Cloud<'_, T, D>,
+        _cells: Range<usize>,
+        _conserve: bool,
+        _value: &impl Fn(usize) -> Q,
+        _sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+    ) -> Four {
+        Four::default()
+    }
+
+    /// The same in one cell that is given by its number, point by point; returns whether it was fitted with the full set of
+    /// functions.
+    fn integrate_hard<Q: Field<T>>(
+        &self,
+        _cloud: &Cloud<'_, T, D>,
+        _cell: usize,
+        _conserve: bool,
+        _value: &impl Fn(usize) -> Q,
+        _sink: impl FnMut(&Point<T, D>, Q),
+    ) -> bool {
+        true
     }
 
     /// Moves the particles' `values` towards what the reconstruction sees of them; `weights` (masses) make the fit keep

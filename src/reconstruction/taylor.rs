@@ -5,12 +5,15 @@ use std::ops::Range;
 use nalgebra::SVector;
 
 use super::gauss::GaussRule;
-use super::{Cloud, Patch, Point, Reconstruction};
+use super::{Cloud, Four, Patch, Point, Reconstruction};
 use crate::field::Field;
 use crate::grid::Cell;
+use crate::lanes::{LANES, Lanes};
 use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
-use crate::taylor::{CellFit, Gram, default_tolerance, taylor_functions};
+use crate::taylor::{
+    CellFit, FourSums, Gram, MOST_COMPONENTS, default_tolerance, taylor_functions, taylor_lanes,
+};
 
 /// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor functions through
 /// the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3 dimensions.
@@ -253,6 +256,66 @@ fn fit_about_mean<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
     coefficients
 }
 
+/// Up to four occupied cells with their particles; spare lanes repeat the last cell.
+struct CellGroup<'a, const D: usize> {
+    len: usize,
+    cells: [Cell<D>; LANES],
+    particles: [&'a [u32]; LANES],
+    counts: [usize; LANES],
+}
+
+impl<'a, const D: usize> CellGroup<'a, D> {
+    #[inline(always)]
+    fn new<T: Scalar>(cloud: &Cloud<'a, T, D>, places: Range<usize>) -> Self {
+        let occupied = &cloud.bins.occupied()[places];
+        let numbers: [usize; LANES] = std::array::from_fn(|l| occupied[l.min(occupied.len() - 1)] as usize);
+        let particles = numbers.map(|number| cloud.bins.particles_in(number));
+        Self {
+            len: occupied.len(),
+            cells: numbers.map(|number| cloud.grid.cell(number)),
+            counts: particles.map(<[u32]>::len),
+            particles,
+        }
+    }
+
+    /// Most particles of a cell.
+    fn longest(&self) -> usize {
+        self.counts.iter().copied().max().unwrap_or(0)
+    }
+
+    /// The `k`-th particle of each cell, and one; the last particle and zero where there are fewer.
+    #[inline(always)]
+    fn points<T: Scalar, V: Lanes<T>>(&self, k: usize) -> ([usize; LANES], V) {
+        let numbers = std::array::from_fn(|l| self.particles[l][k.min(self.counts[l] - 1)] as usize);
+        let weights = self
+            .counts
+            .map(|count| if k < count { T::one() } else { T::zero() });
+        (numbers, V::new(weights))
+    }
+
+    /// Local coordinates of one particle of each cell.
+    #[inline(always)]
+    fn local<T: Scalar, V: Lanes<T>>(&self, cloud: &Cloud<'_, T, D>, numbers: &[usize; LANES]) -> [V; D] {
+        let x = numbers.map(|p| cloud.positions[p]);
+        let (two, one) = (V::splat(T::lit(2.0)), V::splat(T::one()));
+        std::array::from_fn(|a| {
+            let x = V::new(std::array::from_fn(|l| x[l][a])) - V::splat(cloud.grid.min()[a]);
+            let cell = V::new(std::array::from_fn(|l| T::lit(f64::from(self.cells[l][a]))));
+            (x * V::splat(cloud.grid.inverse_cell_size()[a]) - cell) * two - one
+        })
+    }
+}
+
+/// The components of four values.
+#[inline(always)]
+fn lanes_of<T: Scalar, V: Lanes<T>, Q: Field<T>>(values: &[Q; LANES]) -> [V; MOST_COMPONENTS] {
+    let mut components = [V::splat(T::zero()); MOST_COMPONENTS];
+    for q in 0..Q::COMPONENTS {
+        components[q] = V::new(std::array::from_fn(|l| values[l].component(q)));
+    }
+    components
+}
+
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor<T, D, NB> {
     const FIELDS_AT_PARTICLES: bool = false;
     const AMOUNTS_AT_PARTICLES: bool = false;
@@ -328,6 +391,79 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
             let coefficients = conserved(fits, cloud, cell as usize, &amount);
             self.rule.emit(&fits.patch, &coefficients, &mut sink);
         }
+    }
+
+    const BY_FOUR: bool = true;
+
+    fn line(&self) -> impl Iterator<Item = T> {
+        self.rule.line()
+    }
+
+    #[inline(always)]
+    fn integrate_four<V: Lanes<T>, Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        conserve: bool,
+        value: &impl Fn(usize) -> Q,
+        mut sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+    ) -> Four {
+        let group = CellGroup::new(cloud, cells);
+        let volume = cloud.grid.cell_volume();
+        let first = usize::from(conserve);
+        let mut sums = FourSums::<V, NB>::new();
+        let mut mean = [V::splat(T::zero()); MOST_COMPONENTS];
+        let whole = V::splat(T::one() / volume);
+        for k in 0..group.longest() {
+            let (numbers, weight) = group.points::<T, V>(k);
+            let s = group.local::<T, V>(cloud, &numbers);
+            let at_points = numbers.map(value);
+            let values = lanes_of::<T, V, Q>(&at_points);
+            sums.add(&taylor_lanes::<T, V, D, NB>(&s), weight, &values, Q::COMPONENTS);
+            if conserve {
+                let amount = V::new(numbers.map(|p| cloud.volumes[p])) * weight * whole;
+                for q in 0..Q::COMPONENTS {
+                    mean[q] = amount.mul_add(values[q], mean[q]);
+                }
+            }
+        }
+        if conserve {
+            sums.take_out(&mean, Q::COMPONENTS);
+        }
+        let mut fits = sums.fit::<T, D>(first, group.counts, self.tolerance, Q::COMPONENTS);
+        if conserve {
+            fits.coefficients[0] = mean;
+        }
+        self.rule
+            .emit_lanes(volume, &fits.coefficients, Q::COMPONENTS, &mut sink);
+        let mut four = Four::default();
+        for l in 0..group.len {
+            four.hard[l] = fits.hard[l];
+            four.reduced += usize::from(!fits.hard[l] && fits.functions[l] + first < NB);
+        }
+        four
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn integrate_hard<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cell: usize,
+        conserve: bool,
+        value: &impl Fn(usize) -> Q,
+        mut sink: impl FnMut(&Point<T, D>, Q),
+    ) -> bool {
+        let fits = CellFits::new(cloud, cell, self.tolerance);
+        let (coefficients, full) = if conserve {
+            let amount = |p| value(p).scaled(cloud.volumes[p]);
+            let full = fits.conserved.functions() + 1 == NB;
+            (conserved(&fits, cloud, cell, &amount), full)
+        } else {
+            (free(&fits, cloud, cell, value), fits.free.functions() == NB)
+        };
+        self.rule.emit(&fits.patch, &coefficients, &mut sink);
+        full
     }
 
     fn reduced_cells(&self) -> usize {

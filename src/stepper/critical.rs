@@ -171,6 +171,7 @@ where
         let rates: Vec<_> = (0..self.particles.len()).map(|p| self.stress_rate(p)).collect();
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         let assembly = Assembly {
+            by_four: self.by_four(),
             basis: &self.basis,
             reconstruction: &mut self.reconstruction,
             cloud,

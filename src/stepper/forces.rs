@@ -3,13 +3,13 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::cell_sums::CellSums;
-use super::lanes::{self, Bodies, Pass};
+use super::lanes::{self, Bodies, Fits, Pass};
 use super::spans::{Spans, share};
 use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::law::ConstitutiveLaw;
-use crate::parallel::{Windows, add_up, each_span};
+use crate::parallel::{PerSpan, Windows, add_up, each_span};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Point, Reconstruction};
 use crate::scalar::Scalar;
@@ -118,7 +118,9 @@ where
     fn integrate_stress(&mut self) {
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         let effective = &self.particles.stress;
+        let by_four = self.by_four();
         let assembly = Assembly {
+            by_four,
             basis: &self.basis,
             reconstruction: &mut self.reconstruction,
             cloud,
@@ -131,6 +133,10 @@ where
             assembly.internal_force(|p| phase.total_stress(&effective[p], &data[p]));
         } else {
             assembly.internal_force(|p| effective[p]);
+        }
+        if by_four {
+            let reduced = self.spans.reduced.iter().sum();
+            self.diagnostics.record_reduced(reduced);
         }
     }
 
@@ -214,6 +220,8 @@ where
 
 /// What the internal force is made of.
 pub(super) struct Assembly<'a, 'c, T: Scalar, const D: usize, B, R> {
+    /// Four cells at a time.
+    pub(super) by_four: bool,
     pub(super) basis: &'a B,
     pub(super) reconstruction: &'a mut R,
     pub(super) cloud: Cloud<'c, T, D>,
@@ -247,12 +255,29 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
             cells: spans,
             lengths,
             vectors,
+            reduced,
             ..
         } = self.spans;
         let (span, parallel) = share(spans, occupied.len(), lengths[1]);
-        let work = (occupied, Windows::new(spans, vectors, self.force, 1));
-        each_span(parallel, span, work, &|place, (cells, force)| {
+        reduced.fill(0);
+        let work = (
+            occupied,
+            Windows::new(spans, vectors, self.force, 1),
+            PerSpan(&mut reduced[..]),
+        );
+        let by_four = self.by_four;
+        each_span(parallel, span, work, &|place, (cells, force, reduced)| {
             let (first, force) = force.one();
+            if const { lanes::fit::<T, D, B, R>() } && by_four {
+                let fits = Fits {
+                    reconstruction,
+                    cloud,
+                    cells: place..place + cells.len(),
+                };
+                let mut sink = |i: usize, f| force[i - first] -= f;
+                let pass = Pass::new(basis, cloud.grid);
+                return reduced.set(pass.integrate_stress(fits, &stress, &mut sink));
+            }
             reconstruction.integrate_cells(cloud, place..place + cells.len(), &stress, |point, weighted| {
                 add(point, weighted, force, first);
             });

@@ -324,10 +324,21 @@ where
         if fits {
             self.cut_cells();
         }
+        if self.by_four() {
+            return;
+        }
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
         self.reconstruction.prepare(&cloud);
         let reduced = self.reconstruction.reduced_cells();
         self.diagnostics.record_reduced(reduced);
+    }
+
+    /// Whether fits are made and integrated for four cells at a time, so that nothing of them need be kept. A consistent
+    /// mass matrix takes them one by one.
+    fn by_four(&self) -> bool {
+        let can = const { !P::FLOWS && lanes::fit::<T, D, B, R>() };
+        can && self.velocity_mass == VelocityMass::Lumped
+            && self.reconstruction.line().count() <= lanes::MOST_POINTS
     }
 
     /// Puts the particles in the order of their cells.

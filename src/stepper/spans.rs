@@ -32,6 +32,8 @@ pub(super) struct Spans<T, const D: usize> {
     pub(super) matrices: Vec<T>,
     pub(super) sums: Vec<Sums<T, D>>,
     pub(super) moved: Vec<Moved<T>>,
+    /// Of spans of cells, how many were fitted without the full set of functions.
+    pub(super) reduced: Vec<usize>,
 }
 
 /// What became of the particles of a span that moved.
@@ -103,6 +105,7 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             matrices: Vec::new(),
             sums: vec![Sums::zero(); spans],
             moved: vec![Moved::default(); spans],
+            reduced: Vec::new(),
         }
     }
 
@@ -154,6 +157,7 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             fit(&self.particles, &mut self.vectors, 1);
         }
         if cells {
+            self.reduced = vec![0; self.sums.len() * PARTICLES / CELLS];
             fit(&self.cells, &mut self.vectors, 1);
         }
         // Beyond one dimension windows grow by whole rows when particles cross.
@@ -170,6 +174,7 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             + size_of::<T>() * (self.scalars.capacity() + self.matrices.capacity())
             + size_of::<SVector<T, D>>() * self.vectors.capacity()
             + size_of::<Sums<T, D>>() * self.sums.capacity()
+            + size_of::<usize>() * self.reduced.capacity()
             + size_of::<Moved<T>>() * self.moved.capacity()
     }
 

@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::acceleration::Walls;
 use super::cell_sums::CellSums;
 use super::diagnostics::Sums;
-use super::lanes::{self, Acceleration, Bodies, Pass};
+use super::lanes::{self, Acceleration, Bodies, Fits, Pass};
 use super::matrix::Unknown;
 use super::spans::{Spans, share};
 use super::{Dofs, Forcing, Stepper, cloud};
@@ -202,6 +202,10 @@ where
 
     /// Momentum and row sums of the mass from the reconstructed densities.
     fn map_lumped(&mut self) -> T {
+        if const { lanes::fit::<T, D, B, R>() } && self.by_four() {
+            self.map_lumped_by_four();
+            return sum(&self.dofs.lumped);
+        }
         let add = |(basis, grid): Places<'_, T, D, B>,
                    point: &Point<T, D>,
                    amount: Amount<T, D>,
@@ -213,6 +217,55 @@ where
         };
         self.integrate_amounts(1, Dofs::lumped_mut, &add);
         sum(&self.dofs.lumped)
+    }
+
+    #[inline(never)]
+    fn map_lumped_by_four(&mut self) {
+        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
+        let (mass, velocity, volume) = (
+            &self.particles.mass,
+            &self.particles.velocity,
+            &self.particles.volume,
+        );
+        let density = |p: usize| {
+            let density = mass[p] / volume[p];
+            MassMomentum {
+                mass: density,
+                momentum: velocity[p] * density,
+            }
+        };
+        let (basis, grid, reconstruction) = (&self.basis, &self.grid, &self.reconstruction);
+        let occupied = self.bins.occupied();
+        let (lumped, momentum) = self.dofs.lumped_mut();
+        let Spans {
+            cells: spans,
+            lengths,
+            scalars,
+            vectors,
+            ..
+        } = &mut self.spans;
+        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
+        let work = (
+            occupied,
+            Windows::new(spans, scalars, lumped, 1),
+            Windows::new(spans, vectors, momentum, 1),
+        );
+        each_span(parallel, span, work, &|place, (cells, mass, momentum)| {
+            let ((first, mass), (_, momentum)) = (mass.one(), momentum.one());
+            let momentum = &mut momentum[..mass.len()];
+            let fits = Fits {
+                reconstruction,
+                cloud: &cloud,
+                cells: place..place + cells.len(),
+            };
+            let mut sink = |i: usize, m, q| {
+                mass[i - first] += m;
+                momentum[i - first] += q;
+            };
+            Pass::new(basis, grid).integrate_densities(fits, &density, &mut sink);
+        });
+        add_up(spans, scalars, lumped, 1);
+        add_up(spans, vectors, momentum, 1);
     }
 
     /// Momentum and mass matrix from the reconstructed densities.

@@ -43,7 +43,7 @@ pub fn default_tolerance<T: Scalar>(dimensions: usize) -> T {
 }
 
 /// Share of a function's square sum that must be independent for the Gram matrix to be trusted.
-const GRAM_SHARE: f64 = 1e-2;
+pub(super) const GRAM_SHARE: f64 = 1e-2;
 
 /// Least-squares fit of fields in one cell, prepared for a set of points.
 #[derive(Clone, Copy, Debug)]

@@ -11,8 +11,11 @@
 
 mod basis;
 mod fit;
+mod four;
 mod shift;
 
 pub use basis::taylor_functions;
 pub use fit::{CellFit, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE_IN_SPACE, Gram, default_tolerance};
+pub use four::MOST_COMPONENTS;
+pub(crate) use four::{FourSums, taylor_lanes};
 pub(crate) use shift::shift_sums;

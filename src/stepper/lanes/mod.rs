@@ -3,18 +3,21 @@
 //! Everything is computed in [`Lanes`], one for each of up to four particles that follow each other in a cell ([`Group`]).
 //! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs, and then over the
 //! rows. What a group adds to DOFs stays in lanes while particles of its cell come, and longer where the next cell is the
-//! neighbour along axis 0 ([`sums`]). One file per pass: `mass_and_force`, `velocity`, `advance`.
+//! neighbour along axis 0 ([`sums`]). One file per pass: `mass_and_force`, `velocity`, `advance`; `fits` has
+//! four cells in the lanes.
 //!
 //! A group that is not full repeats its last particle without mass and volume. Groups depend on the particles' order and on
 //! where spans begin, not on threads.
 
 mod advance;
+mod fits;
 mod mass_and_force;
 mod rows;
 mod sums;
 mod velocity;
 
 pub(super) use advance::Motion;
+pub(super) use fits::{Fits, MOST_POINTS};
 pub(super) use mass_and_force::Bodies;
 pub(super) use velocity::Acceleration;
 
@@ -23,11 +26,17 @@ use nalgebra::{SMatrix, SVector};
 use crate::basis::{BasisFamily, Factors};
 use crate::grid::{Cell, Grid};
 use crate::lanes::{LANES, Lanes};
+use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 
 /// Whether the passes go this way. In one dimension there is little to share along the axes.
 pub(super) const fn apply<T: Scalar, const D: usize, B: BasisFamily<T, D>>() -> bool {
     D > 1 && B::WIDTH > 0
+}
+
+/// Whether fits can be integrated over four cells at a time.
+pub(super) const fn fit<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>>() -> bool {
+    apply::<T, D, B>() && R::BY_FOUR && !R::FIELDS_MOVE && B::FIXED_POINTS_ALIKE
 }
 
 /// Particles of one cell that follow each other, at most [`LANES`].

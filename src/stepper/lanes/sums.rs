@@ -9,7 +9,7 @@ use nalgebra::SVector;
 use super::Pass;
 use crate::basis::{BasisFamily, Factors};
 use crate::grid::Cell;
-use crate::lanes::Lanes;
+use crate::lanes::{LANES, Lanes};
 use crate::scalar::Scalar;
 
 /// DOFs of a cell, at most: four along each of three axes.
@@ -71,7 +71,7 @@ impl<V: Copy, const D: usize> Sums<V, D> {
 
     /// Adds `parts` to the sums, which were those of the cell before if `MOVE`.
     #[inline(always)]
-    fn add_to<const MOVE: bool, T: Scalar, B: BasisFamily<T, D>>(
+    pub(super) fn add_to<const MOVE: bool, T: Scalar, B: BasisFamily<T, D>>(
         &mut self,
         pass: &Pass<'_, T, D, B>,
         factors: &Factors<V, D>,
@@ -114,6 +114,38 @@ impl<V: Copy, const D: usize> Sums<V, D> {
                     }
                     self.vector[place][c] = sum;
                 }
+            }
+        }
+    }
+
+    /// Where the lanes are those of four cells: hands `sink(dof, scalar, vector)` the sums of each cell that is not `left_out`
+    /// and starts again.
+    #[inline(always)]
+    pub(super) fn spread<T: Scalar, B: BasisFamily<T, D>>(
+        &mut self,
+        pass: &Pass<'_, T, D, B>,
+        cells: &[Cell<D>],
+        left_out: &[bool; LANES],
+        sink: &mut impl FnMut(usize, T, SVector<T, D>),
+    ) where
+        V: Lanes<T>,
+    {
+        let zero = V::splat(T::zero());
+        let first: [usize; LANES] = std::array::from_fn(|l| cells.get(l).map_or(0, |c| pass.first_dof(c)));
+        for row in 0..Pass::<T, D, B>::ROWS {
+            let (offset, _) = pass.row(row);
+            for i in 0..B::WIDTH {
+                let place = row * B::WIDTH + i;
+                let scalar = self.scalar[place].array();
+                let vector = self.vector[place].map(V::array);
+                for l in 0..cells.len().min(LANES) {
+                    if !left_out[l] {
+                        let part = SVector::from_fn(|c, _| vector[c][l]);
+                        sink(first[l] + offset + i, scalar[l], part);
+                    }
+                }
+                self.scalar[place] = zero;
+                self.vector[place] = [zero; D];
             }
         }
     }

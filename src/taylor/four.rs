@@ -1,0 +1,213 @@
+//! The fits of four cells at once.
+//!
+//! The same least squares as [`super::CellFit`] from the Gram matrix, one cell in each lane, and solved where they stand
+//! instead of being kept. A function of which the points clearly see nothing is left out here too; a cell where that is
+//! in doubt, or digits would be lost, is *hard* and left to [`super::CellFit`].
+
+use nalgebra::SVector;
+
+use super::basis::taylor_sizes;
+use super::fit::GRAM_SHARE;
+use crate::lanes::{LANES, Lanes};
+use crate::scalar::Scalar;
+
+/// Share of a function's square sum, in units of the rounding of one, that rounding may make of nothing.
+const ROUNDING: f64 = 1e4;
+
+/// Most components of a field: a tensor in three dimensions.
+pub const MOST_COMPONENTS: usize = 9;
+
+/// The Taylor functions, as [`super::taylor_functions`].
+#[inline(always)]
+pub(crate) fn taylor_lanes<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(s: &[V; D]) -> [V; NB] {
+    let half = V::splat(T::one() / T::lit(2.0));
+    let sixth = V::splat(T::one() / T::lit(6.0));
+    let mut psi = [V::splat(T::one()); NB];
+    psi[1..=D].copy_from_slice(s);
+    if NB > D + 1 {
+        for a in 0..D {
+            psi[1 + D + a] = s[a] * s[a] * half - sixth;
+        }
+        let mut k = 1 + 2 * D;
+        for a in 0..D {
+            for b in a + 1..D {
+                psi[k] = s[a] * s[b];
+                k += 1;
+            }
+        }
+    }
+    psi
+}
+
+/// Sums over the points of four cells: of products of the functions, and of functions times the components of a field.
+#[derive(Clone, Copy)]
+pub(crate) struct FourSums<V, const NB: usize> {
+    gram: [[V; NB]; NB],
+    right: [[V; MOST_COMPONENTS]; NB],
+}
+
+/// Unit triangular factor below the diagonal, one over the squares that are left on it, zero for functions left out.
+#[derive(Clone, Copy)]
+struct Factor<V, const NB: usize>([[V; NB]; NB]);
+
+/// What became of four fits.
+pub(crate) struct FourFits<V, const NB: usize> {
+    /// Coefficients of each function.
+    pub(crate) coefficients: [[V; MOST_COMPONENTS]; NB],
+    pub(crate) hard: [bool; LANES],
+    /// Number of functions.
+    pub(crate) functions: [usize; LANES],
+}
+
+impl<V: Copy, const NB: usize> FourSums<V, NB> {
+    #[inline(always)]
+    pub(crate) fn new<T: Scalar>() -> Self
+    where
+        V: Lanes<T>,
+    {
+        let zero = V::splat(T::zero());
+        Self {
+            gram: [[zero; NB]; NB],
+            right: [[zero; MOST_COMPONENTS]; NB],
+        }
+    }
+
+    /// Adds a point of each cell with weight one, or zero where a cell has no further point.
+    #[inline(always)]
+    pub(crate) fn add<T: Scalar>(
+        &mut self,
+        psi: &[V; NB],
+        weight: V,
+        values: &[V; MOST_COMPONENTS],
+        components: usize,
+    ) where
+        V: Lanes<T>,
+    {
+        for i in 0..NB {
+            let weighted = psi[i] * weight;
+            for j in 0..=i {
+                self.gram[i][j] = weighted.mul_add(psi[j], self.gram[i][j]);
+            }
+            for q in 0..components {
+                self.right[i][q] = weighted.mul_add(values[q], self.right[i][q]);
+            }
+        }
+    }
+
+    /// Takes a mean, known of each component, out of the sums.
+    #[inline(always)]
+    pub(crate) fn take_out<T: Scalar>(&mut self, mean: &[V; MOST_COMPONENTS], components: usize)
+    where
+        V: Lanes<T>,
+    {
+        for k in 1..NB {
+            for q in 0..components {
+                self.right[k][q] = self.right[k][q] - self.gram[k][0] * mean[q];
+            }
+        }
+    }
+
+    /// Fits with the functions from `first` on, as many as a cell has points, `counts`, at most.
+    #[inline(always)]
+    pub(crate) fn fit<T: Scalar, const D: usize>(
+        &self,
+        first: usize,
+        counts: [usize; LANES],
+        tolerance: T,
+        components: usize,
+    ) -> FourFits<V, NB>
+    where
+        V: Lanes<T>,
+    {
+        let zero = V::splat(T::zero());
+        let (factor, doubt, kept) = self.factorise::<T, D>(first, counts, tolerance);
+        let doubt = doubt.array();
+        let kept = kept.array();
+        let mut coefficients = [[zero; MOST_COMPONENTS]; NB];
+        for q in 0..components {
+            factor.solve(first, q, &self.right, &mut coefficients);
+        }
+        FourFits {
+            coefficients,
+            hard: doubt.map(|doubt| doubt != T::zero()),
+            functions: kept.map(|kept| kept.primal() as usize),
+        }
+    }
+
+    /// `L D L^T`; also how many functions are in doubt, and how many are kept.
+    #[inline(always)]
+    fn factorise<T: Scalar, const D: usize>(
+        &self,
+        first: usize,
+        counts: [usize; LANES],
+        tolerance: T,
+    ) -> (Factor<V, NB>, V, V)
+    where
+        V: Lanes<T>,
+    {
+        let (zero, one) = (V::splat(T::zero()), V::splat(T::one()));
+        let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
+        let share = V::splat(T::lit(GRAM_SHARE));
+        let rounding = V::splat(T::lit(ROUNDING) * T::default_epsilon());
+        let numbers = V::new(counts.map(T::count));
+        let mut l = [[zero; NB]; NB];
+        let (mut doubt, mut functions) = (zero, zero);
+        for k in first..NB {
+            let square = self.gram[k][k];
+            let mut left = square;
+            let mut row = [zero; NB];
+            for j in first..k {
+                let mut dot = self.gram[k][j];
+                for i in first..j {
+                    dot = dot - l[j][i] * row[i];
+                }
+                row[j] = dot;
+                l[k][j] = dot * l[j][j];
+                left = left - l[k][j] * dot;
+            }
+            let least = numbers * V::splat(tolerance * tolerance * sizes[k] * sizes[k]);
+            let allowed = numbers.above(V::splat(T::count(k)));
+            let kept = left.above(least) * left.above(square * share) * allowed;
+            let seen = (left + square * rounding).above(least) * allowed;
+            doubt = doubt + (seen - kept);
+            functions = functions + kept;
+            l[k][k] = kept / (left * kept + (one - kept));
+            for j in first..k {
+                l[k][j] = l[k][j] * kept;
+            }
+        }
+        (Factor(l), doubt, functions)
+    }
+}
+
+impl<V: Copy, const NB: usize> Factor<V, NB> {
+    /// Coefficients of component `q` from its sums.
+    #[inline(always)]
+    fn solve<T: Scalar>(
+        &self,
+        first: usize,
+        q: usize,
+        right: &[[V; MOST_COMPONENTS]; NB],
+        coefficients: &mut [[V; MOST_COMPONENTS]; NB],
+    ) where
+        V: Lanes<T>,
+    {
+        let l = &self.0;
+        let mut x = [V::splat(T::zero()); NB];
+        for k in first..NB {
+            x[k] = right[k][q];
+            for j in first..k {
+                x[k] = x[k] - l[k][j] * x[j];
+            }
+        }
+        for k in first..NB {
+            x[k] = x[k] * l[k][k];
+        }
+        for k in (first..NB).rev() {
+            for j in k + 1..NB {
+                x[k] = x[k] - l[j][k] * x[j];
+            }
+            coefficients[k][q] = x[k];
+        }
+    }
+}
