@@ -132,16 +132,23 @@ fn space(particles: usize) -> Vec<Case> {
     cases
 }
 
-/// Small: the banded matrix takes the square of a row of cells for each DOF.
+/// Particles whose matrix is solved twice a step.
 fn relaxed() -> Vec<Case> {
-    let body = Body::of::<2>(2_500, Order::Cells);
-    case("relaxed tls", body, None, || {
-        body.simulation::<2, _, _>(
-            RelaxedTaylor::<f64, 2, 6>::for_degree(2),
-            elastic(),
-            VelocityMass::Constrained,
-        )
-    })
+    let constrained = VelocityMass::Constrained;
+    let mut cases = Vec::new();
+    for particles in [10_000, 100_000] {
+        let body = Body::of::<2>(particles, Order::Cells);
+        cases.extend(case("relaxed tls", body, None, || {
+            let method = RelaxedTaylor::<f64, 2, 6>::for_degree(2);
+            body.simulation::<2, _, _>(method, elastic(), constrained)
+        }));
+    }
+    let body = Body::of::<3>(100_000, Order::Cells);
+    cases.extend(case("relaxed tls", body, None, || {
+        let method = RelaxedTaylor::<f64, 3, 10>::for_degree(2);
+        body.simulation::<3, _, _>(method, elastic(), constrained)
+    }));
+    cases
 }
 
 /// Seconds that `work` takes; on one thread those that it ran, where the system tells: others may share the machine.

@@ -101,6 +101,7 @@ impl<T: Scalar> AxisFamily<T, 4> for DualDomain {
 impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
     const TAKES_IN_CELLS: bool = true;
     const FIXED_POINTS_ALIKE: bool = false;
+    const FOLLOWS_WINDOW: bool = true;
 
     fn take_in(&mut self, grid: &Grid<T, D>, bins: &Bins<D>) {
         self.missing.clear();
@@ -155,7 +156,7 @@ impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
             let ends = [false, true].map(|above| missing & side(axis, above) != 0);
             row(cells[axis], cell[axis] as usize, unit, ends)
         });
-        tensor::product_of_rows(grid, &rows, |axis| cells[axis] + 1, f);
+        tensor::product_of_rows(grid, &rows, |cells| cells + 1, f);
     }
 
     /// Gauss points stand still, so nothing crosses there: the plain gradient is the accurate one.

@@ -51,6 +51,10 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     /// so; four points of a cell are then not computed at once.
     const WIDTH: usize = 0;
 
+    /// Whether the DOFs are those of the grid's [`Window`](crate::grid::Window), counted from its first one. A body in a grid that
+    /// is much larger then takes memory in proportion to itself. Without it the window is always the whole grid.
+    const FOLLOWS_WINDOW: bool = false;
+
     /// Whether [`BasisFamily::for_each_at_fixed_point`] visits what [`BasisFamily::for_each`] does.
     const FIXED_POINTS_ALIKE: bool = true;
 
@@ -139,10 +143,17 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     /// has a value on the face.
     fn for_each_on_face(&self, grid: &Grid<T, D>, face: Face, mut f: impl FnMut(usize)) {
         let dofs = self.dofs(grid);
-        let wanted = match face.side {
-            Side::Min => 0,
-            Side::Max => dofs[face.axis] - 1,
+        let (first, shape) = (grid.window().first()[face.axis], grid.window().shape()[face.axis]);
+        let (reaches, wanted) = match face.side {
+            Side::Min => (first == 0, 0),
+            Side::Max => (
+                first as usize + shape == grid.cells()[face.axis],
+                dofs[face.axis] - 1,
+            ),
         };
+        if !reaches {
+            return;
+        }
         let stride: usize = dofs[..face.axis].iter().product();
         for dof in 0..self.dof_count(grid) {
             if dof / stride % dofs[face.axis] == wanted {

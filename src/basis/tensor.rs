@@ -62,6 +62,11 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
     }
 }
 
+/// Whether the DOFs of a cell follow from its index alone, see [`BasisFamily::FOLLOWS_WINDOW`].
+pub const fn follows_window<T: Scalar, const W: usize, A: AxisFamily<T, W>>() -> bool {
+    A::UNIFORM
+}
+
 /// [`BasisFamily::WIDTH`] of the product of a family with itself.
 pub const fn width_in_lanes<T: Scalar, const W: usize, A: AxisFamily<T, W>>() -> usize {
     if A::UNIFORM && W <= MOST_WIDTH { W } else { 0 }
@@ -113,9 +118,9 @@ pub fn interpolation_point<T: Scalar, const D: usize, const W: usize, A: AxisFam
     grid: &Grid<T, D>,
     mut dof: usize,
 ) -> SVector<T, D> {
-    let (shape, cells) = (dofs(family, grid), grid.cells());
+    let (shape, cells, first) = (dofs(family, grid), grid.cells(), grid.window().first());
     SVector::from_fn(|axis, _| {
-        let along = dof % shape[axis];
+        let along = first[axis] as usize + dof % shape[axis];
         dof /= shape[axis];
         let whole = grid.max()[axis] - grid.min()[axis];
         let point = family.interpolation_point(cells[axis], along);
@@ -123,12 +128,12 @@ pub fn interpolation_point<T: Scalar, const D: usize, const W: usize, A: AxisFam
     })
 }
 
-/// DOFs along each axis of the product of `family` with itself.
+/// DOFs along each axis of the product of `family` with itself, in the grid's window.
 pub fn dofs<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
     family: &A,
     grid: &Grid<T, D>,
 ) -> [usize; D] {
-    grid.cells().map(|cells| family.dofs_on_axis(cells))
+    grid.window().shape().map(|cells| family.dofs_on_axis(cells))
 }
 
 /// DOFs that points in the cells with numbers from that of `first` to that of `last` see: the numbers of the DOFs of a cell
@@ -163,10 +168,10 @@ pub fn for_each<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
         let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
         family.row(cells[axis], cell[axis] as usize, unit)
     });
-    product_of_rows(grid, &rows, |axis| family.dofs_on_axis(cells[axis]), f);
+    product_of_rows(grid, &rows, |cells| family.dofs_on_axis(cells), f);
 }
 
-/// Visits the products of `rows`, one per axis, on a lattice of `dofs(axis)` DOFs along each.
+/// Visits the products of `rows`, one per axis, on a lattice of `dofs(cells)` DOFs along an axis of so many cells.
 #[inline(always)]
 pub fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
     grid: &Grid<T, D>,
@@ -182,10 +187,10 @@ pub fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
         }
         return;
     }
-    let shape = std::array::from_fn(dofs);
+    let lattice = (grid.window().first(), grid.window().shape().map(dofs));
     let mut k = [0; D];
     loop {
-        let (dof, value, gradient) = product(&shape, rows, &k, inverse);
+        let (dof, value, gradient) = product(&lattice, rows, &k, inverse);
         f(dof, value, gradient);
         if !advance(&mut k, W) {
             return;
@@ -195,14 +200,14 @@ pub fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
 
 #[inline(always)]
 fn product<T: Scalar, const D: usize, const W: usize>(
-    shape: &[usize; D],
+    (first, shape): &(Cell<D>, [usize; D]),
     rows: &[Row<T, W>; D],
     k: &[usize; D],
     inverse: &SVector<T, D>,
 ) -> (usize, T, SVector<T, D>) {
     let (mut dof, mut value) = (0, T::one());
     for axis in (0..D).rev() {
-        dof = dof * shape[axis] + rows[axis].dof[k[axis]];
+        dof = dof * shape[axis] + rows[axis].dof[k[axis]] - first[axis] as usize;
         value *= rows[axis].value[k[axis]];
     }
     let gradient = SVector::from_fn(|a, _| {
@@ -241,6 +246,9 @@ macro_rules! tensor_product_family {
         impl<T: $crate::scalar::Scalar, const D: usize> $crate::basis::BasisFamily<T, D> for $family {
             const WIDTH: usize =
                 $crate::basis::tensor::width_in_lanes::<T, $width, $family>();
+
+            const FOLLOWS_WINDOW: bool =
+                $crate::basis::tensor::follows_window::<T, $width, $family>();
 
             #[inline(always)]
             fn factors<V: $crate::lanes::Lanes<T>>(

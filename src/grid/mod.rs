@@ -1,8 +1,10 @@
 //! The fixed background grid: a box of equal cells.
 
 mod face;
+mod window;
 
 pub use face::{Face, Side};
+pub use window::Window;
 
 use nalgebra::SVector;
 
@@ -25,13 +27,14 @@ pub struct Grid<T, const D: usize> {
     inverse_cell_size: SVector<T, D>,
     /// Rounding of a coordinate within a cell and of the cell's edges, in cell sizes.
     doubt: SVector<T, D>,
+    window: Window<D>,
 }
 
 impl<T: Scalar, const D: usize> Grid<T, D> {
     /// A grid over `[min, max]` (m) with `cells` cells along each axis.
     ///
     /// # Errors
-    /// If a bound is not finite, `max <= min`, an axis has no cell, or there are 2^32 cells or more.
+    /// If a bound is not finite, `max <= min`, an axis has no cell, or there are 2^32 - 1 cells or more.
     pub fn new(min: SVector<T, D>, max: SVector<T, D>, cells: [usize; D]) -> Result<Self, GridError> {
         for axis in 0..D {
             let (low, high) = (min[axis], max[axis]);
@@ -65,6 +68,7 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
             cell_size,
             inverse_cell_size: cell_size.map(|h| T::one() / h),
             doubt,
+            window: Window::whole(cells),
         })
     }
 
@@ -83,9 +87,40 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         self.cells
     }
 
-    /// Number of cells.
+    /// The cells that have numbers: all of them, unless told otherwise.
+    #[inline(always)]
+    pub fn window(&self) -> &Window<D> {
+        &self.window
+    }
+
+    /// Gives numbers to the cells of `window` only, as much of it as lies in the grid. What is kept for each cell, or each DOF,
+    /// then grows with the window and not with the grid. In one dimension all keep theirs.
+    #[must_use]
+    pub fn with_window(mut self, window: Window<D>) -> Self {
+        if D > 1 {
+            self.window = window.within(self.cells);
+        }
+        self
+    }
+
+    /// Whether `cell`, and `margin` cells around it as far as the grid goes, have numbers.
+    pub fn has_numbers(&self, cell: &Cell<D>, margin: u32) -> bool {
+        self.window.holds(cell, margin, self.cells)
+    }
+
+    /// Number of cells that have numbers.
     pub fn cell_count(&self) -> usize {
-        self.cells.iter().product()
+        self.window.shape().iter().product()
+    }
+
+    /// The cells along an axis that have numbers, in the first line of the window.
+    pub fn line(&self, axis: usize) -> impl Iterator<Item = Cell<D>> + use<T, D> {
+        let (first, count) = (self.window.first(), self.window.shape()[axis]);
+        (0..count as u32).map(move |i| {
+            let mut cell = first;
+            cell[axis] += i;
+            cell
+        })
     }
 
     /// Size `h` of a cell along each axis (m).
@@ -188,25 +223,16 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         Some(i as u32)
     }
 
-    /// Number of a cell, axis 0 fastest.
+    /// Number of a cell of the window, axis 0 fastest.
     #[inline(always)]
     pub fn linear(&self, cell: &Cell<D>) -> usize {
-        let mut index = 0;
-        for axis in (0..D).rev() {
-            index = index * self.cells[axis] + cell[axis] as usize;
-        }
-        index
+        self.window.number(cell)
     }
 
     /// The cell with number `index`: the inverse of [`Grid::linear`].
     #[inline(always)]
-    pub fn cell(&self, mut index: usize) -> Cell<D> {
-        let mut cell = [0; D];
-        for axis in 0..D {
-            cell[axis] = (index % self.cells[axis]) as u32;
-            index /= self.cells[axis];
-        }
-        cell
+    pub fn cell(&self, index: usize) -> Cell<D> {
+        self.window.cell(index)
     }
 
     /// Coordinate of `x` within its cell along an axis: 0 at the left edge, 1 at the right one.

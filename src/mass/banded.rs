@@ -68,6 +68,11 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
+    /// The entry `(i, j)` of the lower half, `j <= i <= j + half_band`.
+    pub fn get(&self, i: usize, j: usize) -> T {
+        self.rows[self.at(i, j)]
+    }
+
     /// Makes the matrix a copy of `other`.
     pub fn copy_from(&mut self, other: &Self) {
         self.order = other.order;
@@ -209,6 +214,36 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
+    /// Solves with the factorised matrix for `stride` right-hand sides at once: what belongs to an unknown is a row of `stride`
+    /// numbers of `x`.
+    pub(crate) fn solve_lines(&self, x: &mut [T], stride: usize) {
+        match (stride, self.half_band) {
+            (1, 1) => narrow::solve_line::<T, 2>(&self.rows, x),
+            (1, 2) => narrow::solve_line::<T, 3>(&self.rows, x),
+            (1, 3) => narrow::solve_line::<T, 4>(&self.rows, x),
+            _ => self.solve_wide_lines(x, stride),
+        }
+    }
+
+    fn solve_wide_lines(&self, x: &mut [T], stride: usize) {
+        for i in 0..self.order {
+            let (before, here) = x.split_at_mut(i * stride);
+            for j in i.saturating_sub(self.half_band)..i {
+                take(here, self.get(i, j), &before[j * stride..(j + 1) * stride]);
+            }
+        }
+        for i in (0..self.order).rev() {
+            let (here, after) = x.split_at_mut((i + 1) * stride);
+            let here = &mut here[i * stride..];
+            let inverse_pivot = self.get(i, i);
+            here.iter_mut().for_each(|x| *x *= inverse_pivot);
+            for k in i + 1..(i + self.half_band + 1).min(self.order) {
+                let first = (k - i - 1) * stride;
+                take(here, self.get(k, i), &after[first..first + stride]);
+            }
+        }
+    }
+
     /// Product with `x` of the matrix before it is factorised.
     pub fn multiply<const D: usize>(&self, x: &[SVector<T, D>]) -> Vec<SVector<T, D>> {
         let mut y = vec![SVector::zeros(); self.order];
@@ -236,6 +271,14 @@ fn total<T: Scalar, const W: usize>(rows: &[T]) -> T {
     }
     let lower = sums[..W - 1].iter().fold(T::zero(), |s, &x| s + x);
     lower + lower + sums[W - 1]
+}
+
+/// `y -= a x` for as many numbers as `x` has.
+#[inline(always)]
+fn take<T: Scalar>(y: &mut [T], a: T, x: &[T]) {
+    for (y, &x) in y.iter_mut().zip(x) {
+        *y -= a * x;
+    }
 }
 
 /// One over a pivot, zero where it vanishes.

@@ -1,15 +1,22 @@
 //! Mass matrices of the DOFs.
 
+mod axes;
 mod banded;
+mod gradients;
+mod lattice;
 
+pub use axes::AxisMasses;
 pub use banded::Banded;
 pub(crate) use banded::banded_row;
+pub use gradients::ConjugateGradients;
+pub use lattice::Lattice;
 
 /// Which mass turns the DOFs' momentum into their velocity. The acceleration always divides by the lumped
 /// mass of the particles (journal section 5.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum VelocityMass {
-    /// The matrix `integral(rho phi_i phi_j)`, solved with a banded factorisation; held DOFs are then overwritten
+    /// The matrix `integral(rho phi_i phi_j)`, solved with a banded factorisation in one dimension and by preconditioned
+    /// conjugate gradients beyond; held DOFs are then overwritten
     /// with what they are told, as published.
     #[default]
     Consistent,

@@ -75,6 +75,11 @@ impl<const D: usize> Bins<D> {
         &mut self.cell_of
     }
 
+    /// Makes the lists stale because cells have other numbers.
+    pub(crate) fn note_numbering(&mut self) {
+        self.lists_are_stale = true;
+    }
+
     /// Makes the lists stale if particles changed their cells.
     pub(crate) fn note_crossings(&mut self, crossings: usize) {
         self.lists_are_stale |= crossings > 0;
@@ -86,16 +91,16 @@ impl<const D: usize> Bins<D> {
             return;
         }
         self.lists_are_stale = false;
-        if self.start.is_empty() {
+        self.occupied.clear();
+        if self.start.len() != grid.cell_count() + 1 {
             self.start = vec![0; grid.cell_count() + 1];
             self.order = vec![0; self.cell_of.len()];
-            self.occupied = Vec::with_capacity(grid.cell_count());
+            self.occupied.reserve_exact(grid.cell_count());
         }
         self.start.fill(0);
         for cell in &self.cell_of {
             self.start[grid.linear(cell) + 1] += 1;
         }
-        self.occupied.clear();
         for c in 0..grid.cell_count() {
             if self.start[c + 1] > 0 {
                 self.occupied.push(c as u32);

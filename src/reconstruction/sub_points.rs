@@ -89,12 +89,17 @@ fn settle<T: Scalar, const D: usize>(
     position: &mut SVector<T, D>,
 ) -> Cell<D> {
     match cloud.grid.locate(position) {
-        Some(cell) if !cloud.bins.particles_in(cloud.grid.linear(&cell)).is_empty() => cell,
+        Some(cell) if holds_particles(cloud, &cell) => cell,
         _ => {
             *position = cloud.grid.nearest_within(own, position);
             *own
         }
     }
+}
+
+fn holds_particles<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: &Cell<D>) -> bool {
+    let Cloud { grid, bins, .. } = cloud;
+    grid.has_numbers(cell, 0) && !bins.particles_in(grid.linear(cell)).is_empty()
 }
 
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {

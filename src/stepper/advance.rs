@@ -5,6 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use super::Stepper;
 use super::lanes::{self, Motion, Pass};
 use super::spans::{Fault, Flaw, Moved};
+use super::window;
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::law::ConstitutiveLaw;
@@ -51,7 +52,7 @@ where
                     bounds.set(span);
                     return found.set(moved);
                 }
-                let mut crossings = 0;
+                let (mut crossings, mut strayed) = (0, false);
                 let moved =
                     particles
                         .each()
@@ -74,10 +75,15 @@ where
                             let crossed =
                                 settle(grid, cell, particle.position).ok_or(Fault::Left(first + k))?;
                             crossings += usize::from(crossed);
+                            strayed |= crossed && !window::is_safe(grid, cell);
                             Ok(())
                         });
                 let fault = moved.err();
-                found.set(Moved { crossings, fault });
+                found.set(Moved {
+                    crossings,
+                    strayed,
+                    fault,
+                });
             },
         );
         self.account_for_moves()
@@ -88,6 +94,7 @@ where
         let moved = &self.spans.moved;
         let crossings = moved.iter().map(|span| span.crossings).sum();
         let fault = moved.iter().find_map(|span| span.fault);
+        self.strayed |= moved.iter().any(|span| span.strayed);
         self.diagnostics.grid_crossings += crossings;
         self.bins.note_crossings(crossings);
         self.order.note_crossings(crossings);

@@ -183,23 +183,18 @@ where
     }
 
     fn assemble_particle_matrix(&mut self) {
-        let (basis, grid, matrix, seen) = (&self.basis, &self.grid, &mut self.dofs.matrix, &mut self.seen);
+        let (basis, grid, matrix) = (&self.basis, &self.grid, &mut self.dofs.matrix);
         matrix.clear();
-        let particles = self.particles.position.iter().zip(&self.particles.mass);
-        for ((x, &mass), cell) in particles.zip(self.bins.cells()) {
-            seen.clear();
-            basis.for_each(grid, cell, x, |i, phi, _| {
-                let m = mass * phi;
-                matrix.add(i, i, m * phi);
-                for &(j, phi_j) in seen.iter() {
-                    // A DOF that is named twice meets itself in both orders.
-                    let both = if i == j { m + m } else { m };
-                    matrix.add(i.max(j), i.min(j), both * phi_j);
-                }
-                seen.push((i, phi));
-            });
+        let masses = self.particles.mass.iter();
+        let particles = self.particles.position.iter().zip(masses).zip(self.bins.cells());
+        let pairs = &mut self.pairs;
+        for ((x, &mass), cell) in particles {
+            pairs.turn_to(cell, matrix);
+            basis.for_each(grid, cell, x, |i, phi, _| pairs.see(i, phi));
+            pairs.add(mass);
         }
-        matrix.lump_weak(T::lit(WEAK.powi(D as i32)));
+        pairs.flush(matrix);
+        matrix.complete(Some(T::lit(WEAK.powi(D as i32))));
     }
 
     fn add_tractions(&mut self, forcing: &Forcing<T, D>) {

@@ -1,8 +1,10 @@
-//! Solving with the consistent mass matrix.
+//! The consistent mass matrix.
 
 use super::Dofs;
 use super::acceleration::Walls;
-use crate::mass::VelocityMass;
+use crate::basis::BasisFamily;
+use crate::grid::Grid;
+use crate::mass::{Banded, ConjugateGradients, Lattice, VelocityMass};
 use crate::scalar::Scalar;
 
 /// What is solved for, in place.
@@ -12,6 +14,89 @@ pub(super) enum Unknown {
     Acceleration,
     /// From momenta.
     Velocity,
+}
+
+/// In one dimension a band that is factorised, beyond the diagonals of a lattice that are iterated with: there a band
+/// would hold whole rows of the lattice.
+#[derive(Clone, Debug)]
+pub(super) struct MassMatrix<T, const D: usize> {
+    band: Banded<T>,
+    factor: Banded<T>,
+    lattice: Lattice<T>,
+    gradients: ConjugateGradients<T, D>,
+}
+
+impl<T: Scalar, const D: usize> MassMatrix<T, D> {
+    /// Of no DOF.
+    pub(super) fn none() -> Self {
+        Self {
+            band: Banded::zeros(0, 0),
+            factor: Banded::zeros(0, 0),
+            lattice: Lattice::none(),
+            gradients: ConjugateGradients::none(),
+        }
+    }
+
+    /// Of the DOFs of `basis`.
+    pub(super) fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>) -> Self {
+        let none = Self::none();
+        if D == 1 {
+            let band = Banded::zeros(basis.dof_count(grid), basis.half_band(grid));
+            Self {
+                factor: band.clone(),
+                band,
+                ..none
+            }
+        } else {
+            Self {
+                lattice: Lattice::zeros(basis.dofs(grid), basis.degree()),
+                gradients: ConjugateGradients::new(basis, grid),
+                ..none
+            }
+        }
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<T>() * 2 * self.band.len() + self.lattice.bytes() + self.gradients.bytes()
+    }
+
+    /// The band of one dimension, to be filled.
+    pub(super) fn band_mut(&mut self) -> &mut Banded<T> {
+        &mut self.band
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.band.clear();
+        self.lattice.clear();
+    }
+
+    /// Adds to the entry `(i, j)` of the lower half; the upper one, `i < j`, is the same and left out.
+    #[inline(always)]
+    pub(super) fn add(&mut self, i: usize, j: usize, value: T) {
+        if D == 1 {
+            self.band.add(i, j, value);
+        } else if j <= i {
+            self.lattice.add(i, j, value);
+        }
+    }
+
+    /// Takes the sums as complete. Rows whose diagonal holds less than the share `weak` of their sum are lumped, if told so.
+    pub(super) fn complete(&mut self, weak: Option<T>) {
+        if D > 1 {
+            self.gradients.prepare(&mut self.lattice, weak);
+        } else if let Some(least) = weak {
+            self.band.lump_weak(least);
+        }
+    }
+
+    /// Sum of all entries.
+    pub(super) fn total(&self) -> T {
+        if D == 1 {
+            self.band.total()
+        } else {
+            self.gradients.total()
+        }
+    }
 }
 
 impl<T: Scalar, const D: usize> Dofs<T, D> {
@@ -25,40 +110,62 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
         fresh: bool,
         pick: impl Fn(T, T) -> T,
     ) {
+        if D > 1 {
+            return self.iterate(unknown, mass, walls, pick);
+        }
         let right = match unknown {
             Unknown::Acceleration => &mut self.force,
             Unknown::Velocity => &mut self.velocity,
         };
-        let factor = &mut self.factor;
+        let MassMatrix { band, factor, .. } = &mut self.matrix;
         if mass != VelocityMass::Constrained {
             if fresh {
-                factor.copy_from(&self.matrix);
+                factor.copy_from(band);
                 factor.factorise();
             }
-            (0..D).for_each(|axis| factor.solve(right, axis));
+            factor.solve(right, 0);
             return;
         }
-        if D == 1 && !fresh {
+        if fresh {
+            factor.copy_from(band);
             walls.for_each_held(|dof, axis, velocity, acceleration| {
-                self.matrix
-                    .move_known(dof, axis, pick(velocity, acceleration), right);
+                factor.prescribe(dof, axis, pick(velocity, acceleration), right);
+            });
+            factor.factorise();
+        } else {
+            walls.for_each_held(|dof, axis, velocity, acceleration| {
+                band.move_known(dof, axis, pick(velocity, acceleration), right);
             });
             // Only then: what is known of one DOF also moves to the equations of other known ones.
             walls.for_each_held(|dof, axis, velocity, acceleration| {
                 right[dof][axis] = pick(velocity, acceleration);
             });
-            factor.solve(right, 0);
-            return;
         }
-        for axis in 0..D {
-            factor.copy_from(&self.matrix);
-            walls.for_each_held(|dof, held, velocity, acceleration| {
-                if held == axis {
-                    factor.prescribe(dof, axis, pick(velocity, acceleration), right);
-                }
+        factor.solve(right, 0);
+    }
+
+    /// The same with the matrix of a lattice.
+    fn iterate(
+        &mut self,
+        unknown: Unknown,
+        mass: VelocityMass,
+        walls: &Walls<'_, T, D>,
+        pick: impl Fn(T, T) -> T,
+    ) {
+        let right = match unknown {
+            Unknown::Acceleration => &mut self.force,
+            Unknown::Velocity => &mut self.velocity,
+        };
+        let MassMatrix {
+            lattice, gradients, ..
+        } = &mut self.matrix;
+        gradients.release();
+        if mass == VelocityMass::Constrained {
+            walls.for_each_held(|dof, axis, velocity, acceleration| {
+                gradients.hold(dof, axis);
+                right[dof][axis] = pick(velocity, acceleration);
             });
-            factor.factorise();
-            factor.solve(right, axis);
         }
+        gradients.solve(lattice, right);
     }
 }

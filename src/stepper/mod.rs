@@ -26,9 +26,11 @@ mod lanes;
 mod liquid;
 mod matrix;
 mod order;
+mod pairs;
 mod simulation;
 mod spans;
 mod velocity;
+mod window;
 
 pub use critical::{CriticalStep, Mechanism};
 pub use diagnostics::{Conservation, Diagnostics, Energy};
@@ -42,17 +44,15 @@ use crate::basis::BasisFamily;
 use crate::error::{SetupError, StepError};
 use crate::grid::{Face, Grid};
 use crate::law::ConstitutiveLaw;
-use crate::mass::{Banded, VelocityMass};
+use crate::mass::VelocityMass;
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Cut, Reconstruction};
 use crate::scalar::Scalar;
+use matrix::MassMatrix;
 use order::Order;
+use pairs::Pairs;
 use spans::Spans;
-
-/// Most DOFs that a particle sees with the bases of this crate: four along each axis in three dimensions. Others may be
-/// told of more, in the first step.
-const MOST_SEEN: usize = 64;
 
 /// All that a [`Stepper`] is made of.
 #[derive(Clone, Debug)]
@@ -107,10 +107,12 @@ where
     sums: Vec<liquid::Sums<T, D>>,
     motion: Vec<[SVector<T, D>; 2]>,
     spans: Spans<T, D>,
+    /// Whether a particle came near the border of the grid's window.
+    strayed: bool,
     /// Part of each occupied cell that a wave crosses in this step; empty where nothing relaxes.
     crossed: Vec<T>,
-    /// DOFs that one particle sees, with their values; a place to note them while their matrix is summed.
-    seen: Vec<(usize, T)>,
+    /// What the particles of a cell add to their matrix.
+    pairs: Pairs<T, D>,
     /// Force per mass of each particle; empty where there is none but the uniform one.
     body_forces: Vec<SVector<T, D>>,
     /// DOFs of each face, in the order of [`Face::all`].
@@ -121,7 +123,7 @@ where
     diagnostics: Diagnostics<T>,
 }
 
-/// Data of the DOFs, allocated once.
+/// Data of the DOFs, allocated once for each window.
 #[derive(Clone, Debug)]
 struct Dofs<T, const D: usize> {
     /// Lumped mass of the particles.
@@ -133,31 +135,44 @@ struct Dofs<T, const D: usize> {
     /// Row sums of the reconstructed mass; empty where the particles' lumped mass or the matrix serves.
     lumped: Vec<T>,
     /// Consistent mass; of order zero where it is not used.
-    matrix: Banded<T>,
-    /// Its factors.
-    factor: Banded<T>,
+    matrix: MassMatrix<T, D>,
 }
 
 impl<T: Scalar, const D: usize> Dofs<T, D> {
-    fn new(count: usize, half_band: usize, own_mass: Option<VelocityMass>) -> Self {
-        let (lumped, consistent) = match own_mass {
-            None => (0, 0),
-            Some(VelocityMass::Lumped) => (count, 0),
-            Some(VelocityMass::Consistent | VelocityMass::Constrained) => (0, count),
+    /// Of no DOF.
+    fn none() -> Self {
+        Self {
+            mass: Vec::new(),
+            force: Vec::new(),
+            velocity: Vec::new(),
+            lumped: Vec::new(),
+            matrix: MassMatrix::none(),
+        }
+    }
+
+    /// `own_mass` is what divides the momenta, if it is not the lumped mass of the particles.
+    fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>, own_mass: Option<VelocityMass>) -> Self {
+        let count = basis.dof_count(grid);
+        let lumped = if own_mass == Some(VelocityMass::Lumped) {
+            count
+        } else {
+            0
         };
-        let matrix = Banded::zeros(consistent, half_band);
         Self {
             mass: vec![T::zero(); count],
             force: vec![SVector::zeros(); count],
             velocity: vec![SVector::zeros(); count],
             lumped: vec![T::zero(); lumped],
-            factor: matrix.clone(),
-            matrix,
+            matrix: match own_mass {
+                Some(VelocityMass::Consistent | VelocityMass::Constrained) => MassMatrix::new(basis, grid),
+                Some(VelocityMass::Lumped) | None => MassMatrix::none(),
+            },
         }
     }
 
     fn bytes(&self) -> usize {
-        size_of::<T>() * (self.mass.len() + self.lumped.len() + 2 * self.matrix.len())
+        size_of::<T>() * (self.mass.len() + self.lumped.len())
+            + self.matrix.bytes()
             + 2 * size_of::<SVector<T, D>>() * self.force.len()
     }
 }
@@ -204,6 +219,10 @@ where
         for (cell, x) in bins.cells().iter().zip(&mut particles.position) {
             grid.keep_off_edges(cell, x);
         }
+        let grid = match B::FOLLOWS_WINDOW {
+            true => window::lay(grid, bins.cells()),
+            false => grid,
+        };
         let order = match P::FLOWS {
             true => Order::default(),
             false => Order::new(&grid, bins.cells()),
@@ -213,18 +232,6 @@ where
             true => VelocityMass::Constrained,
             false => velocity_mass,
         };
-        let own_mass = (!R::AMOUNTS_AT_PARTICLES || R::PARTICLE_MATRIX).then_some(velocity_mass);
-        let (count, half_band) = (basis.dof_count(&grid), basis.half_band(&grid));
-        let dofs = Dofs::new(count, half_band, own_mass);
-        let liquid_count = if P::FLOWS { count } else { 0 };
-        let liquid = Dofs::new(liquid_count, half_band, own_mass);
-        let face_dofs = Face::all::<D>()
-            .map(|face| {
-                let mut list = Vec::new();
-                basis.for_each_on_face(&grid, face, |dof| list.push(dof as u32));
-                list
-            })
-            .collect();
         let surface_count = surface.len();
         let crossed_count = if R::RELAXES { grid.cell_count() } else { 0 };
         let spans = Spans::new(particles.len());
@@ -240,23 +247,46 @@ where
             bins,
             order,
             cuts: Vec::with_capacity(surface_count),
-            dofs,
-            liquid,
-            drag: vec![T::zero(); liquid_count],
-            sums: vec![liquid::Sums::zero(); liquid_count],
-            motion: vec![[SVector::zeros(); 2]; liquid_count],
+            dofs: Dofs::none(),
+            liquid: Dofs::none(),
+            drag: Vec::new(),
+            sums: Vec::new(),
+            motion: Vec::new(),
             spans,
+            strayed: false,
             crossed: Vec::with_capacity(crossed_count),
-            seen: Vec::with_capacity(MOST_SEEN),
+            pairs: Pairs::new(R::PARTICLE_MATRIX),
             body_forces: Vec::new(),
-            face_dofs,
+            face_dofs: Vec::new(),
             velocity_mass,
             time: T::zero(),
             steps: 0,
             diagnostics: Diagnostics::new(mass, P::FLOWS),
         };
+        stepper.allocate_dofs();
         stepper.allocate();
         Ok(stepper)
+    }
+
+    /// Makes the DOFs of the grid's window.
+    fn allocate_dofs(&mut self) {
+        let (basis, grid) = (&self.basis, &self.grid);
+        let own_mass = (!R::AMOUNTS_AT_PARTICLES || R::PARTICLE_MATRIX).then_some(self.velocity_mass);
+        self.dofs = Dofs::new(basis, grid, own_mass);
+        if P::FLOWS {
+            self.liquid = Dofs::new(basis, grid, own_mass);
+            let count = basis.dof_count(grid);
+            self.drag = vec![T::zero(); count];
+            self.sums = vec![liquid::Sums::zero(); count];
+            self.motion = vec![[SVector::zeros(); 2]; count];
+        }
+        self.face_dofs = Face::all::<D>()
+            .map(|face| {
+                let mut list = Vec::new();
+                basis.for_each_on_face(grid, face, |dof| list.push(dof as u32));
+                list
+            })
+            .collect();
     }
 
     /// Lets reconstruction and basis see the particles and stream the widest values once, so that all they allocate is there
@@ -310,6 +340,9 @@ where
 
     /// Takes in where the particles are.
     fn prepare(&mut self) {
+        if self.strayed {
+            self.follow_particles();
+        }
         if self.order.is_lost() {
             self.restore_order();
         }
@@ -485,7 +518,8 @@ where
         &self.diagnostics
     }
 
-    /// Bytes allocated: particles, their cells, what basis and reconstruction hold, DOFs. Steps allocate nothing beyond.
+    /// Bytes allocated: particles, their cells, what basis and reconstruction hold, DOFs. Steps allocate nothing beyond, but
+    /// where particles move so far through a large grid that its [`Window`](crate::grid::Window) moves with them.
     pub fn bytes(&self) -> usize {
         let both = size_of::<T>() + size_of::<liquid::Sums<T, D>>() + 2 * size_of::<SVector<T, D>>();
         self.particles.bytes()
@@ -496,6 +530,7 @@ where
             + self.dofs.bytes()
             + self.liquid.bytes()
             + self.spans.bytes()
+            + self.pairs.bytes()
             + size_of::<T>() * self.crossed.capacity()
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()
             + both * self.drag.len()

@@ -69,7 +69,8 @@ impl Order {
             return false;
         }
         self.moved = true;
-        self.starts.fill(0);
+        self.starts.clear();
+        self.starts.resize(grid.cell_count(), 0);
         for cell in cells.iter() {
             self.starts[grid.linear(cell)] += 1;
         }

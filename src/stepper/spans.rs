@@ -40,6 +40,8 @@ pub(super) struct Spans<T, const D: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moved<T> {
     pub(super) crossings: usize,
+    /// Whether one came to a cell where the DOFs that it will see might have no numbers.
+    pub(super) strayed: bool,
     pub(super) fault: Option<Fault<T>>,
 }
 
@@ -47,6 +49,7 @@ impl<T> Default for Moved<T> {
     fn default() -> Self {
         Self {
             crossings: 0,
+            strayed: false,
             fault: None,
         }
     }

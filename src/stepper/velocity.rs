@@ -270,7 +270,35 @@ where
 
     /// Momentum and mass matrix from the reconstructed densities.
     fn map_consistent(&mut self) -> T {
-        let half_band = self.dofs.matrix.half_band();
+        if D > 1 {
+            self.integrate_lattice();
+        } else {
+            self.integrate_band();
+        }
+        self.dofs.matrix.complete(None);
+        self.dofs.matrix.total()
+    }
+
+    fn integrate_lattice(&mut self) {
+        let (basis, grid) = (&self.basis, &self.grid);
+        let Dofs { matrix, velocity, .. } = &mut self.dofs;
+        matrix.clear();
+        velocity.fill(SVector::zeros());
+        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
+        let amounts = amounts(&self.particles.mass, &self.particles.velocity);
+        self.reconstruction
+            .integrate_conserved(&cloud, amounts, |point, amount| {
+                let (cell, x) = (&point.cell, &point.position);
+                basis.for_each_at_fixed_point(grid, cell, x, |i, phi_i, _| {
+                    velocity[i] += amount.momentum * phi_i;
+                    let m = amount.mass * phi_i;
+                    basis.for_each_at_fixed_point(grid, cell, x, |j, phi_j, _| matrix.add(i, j, m * phi_j));
+                });
+            });
+    }
+
+    fn integrate_band(&mut self) {
+        let half_band = self.dofs.matrix.band_mut().half_band();
         let add = |(basis, grid): Places<'_, T, D, B>,
                    point: &Point<T, D>,
                    amount: Amount<T, D>,
@@ -287,8 +315,7 @@ where
                 });
             });
         };
-        self.integrate_amounts(half_band + 1, Dofs::matrix_mut, &add);
-        self.dofs.matrix.total()
+        self.integrate_amounts(half_band + 1, Dofs::band_mut, &add);
     }
 
     /// Streams mass and momentum into sums of `width` numbers of mass and one momentum for each DOF.
@@ -401,8 +428,8 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
         (&mut self.lumped, &mut self.velocity)
     }
 
-    fn matrix_mut(&mut self) -> (&mut [T], &mut [SVector<T, D>]) {
-        (self.matrix.rows_mut(), &mut self.velocity)
+    fn band_mut(&mut self) -> (&mut [T], &mut [SVector<T, D>]) {
+        (self.matrix.band_mut().rows_mut(), &mut self.velocity)
     }
 }
 

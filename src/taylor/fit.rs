@@ -44,6 +44,8 @@ pub fn default_tolerance<T: Scalar>(dimensions: usize) -> T {
 
 /// Share of a function's square sum that must be independent for the Gram matrix to be trusted.
 pub(super) const GRAM_SHARE: f64 = 1e-2;
+/// Share of a function's square sum, in units of the rounding of one, that rounding may make of nothing.
+pub(super) const ROUNDING: f64 = 1e4;
 
 /// Least-squares fit of fields in one cell, prepared for a set of points.
 #[derive(Clone, Copy, Debug)]
@@ -166,14 +168,17 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         if gram.count < NB {
             return None;
         }
-        Self::from_gram(gram, 0..NB, &gram.least::<D>(tolerance))
+        let fit = Self::from_gram(gram, 0..NB, &gram.least::<D>(tolerance))?;
+        (fit.functions() == NB).then_some(fit)
     }
 
-    /// `L D L^T` factorisation of the Gram matrix; `None` where it loses too many digits or leaves too little of a
-    /// function.
+    /// `L D L^T` factorisation of the Gram matrix, without each function of which clearly too little is left; `None` where that is
+    /// in doubt, or too many digits are lost.
     #[inline(always)]
     fn from_gram(gram: &Gram<T, NB>, wanted: Range<usize>, least: &SVector<T, NB>) -> Option<Self> {
         let first = wanted.start;
+        let mut functions = wanted.len();
+        let rounding = T::lit(ROUNDING) * T::default_epsilon();
         let gram = &gram.products;
         // Rows of L below the diagonal, and the inverse squares on it.
         let mut l = SMatrix::<T, NB, NB>::zeros();
@@ -187,14 +192,19 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
                 l[(k, j)] = dot * l[(j, j)];
                 left -= l[(k, j)] * dot;
             }
-            if left <= gram[(k, k)] * T::lit(GRAM_SHARE) || left <= least[k] {
+            let square = gram[(k, k)];
+            if left > square * T::lit(GRAM_SHARE) && left > least[k] {
+                l[(k, k)] = T::one() / left;
+            } else if left + square * rounding <= least[k] {
+                l.row_mut(k).fill(T::zero());
+                functions -= 1;
+            } else {
                 return None;
             }
-            l[(k, k)] = T::one() / left;
         }
         Some(Self {
             factors: inverse_below_the_diagonal(&l, first),
-            functions: wanted.len() as u32,
+            functions: functions as u32,
             well_spread: true,
         })
     }

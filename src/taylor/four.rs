@@ -7,12 +7,9 @@
 use nalgebra::SVector;
 
 use super::basis::taylor_sizes;
-use super::fit::GRAM_SHARE;
+use super::fit::{GRAM_SHARE, ROUNDING};
 use crate::lanes::{LANES, Lanes};
 use crate::scalar::Scalar;
-
-/// Share of a function's square sum, in units of the rounding of one, that rounding may make of nothing.
-const ROUNDING: f64 = 1e4;
 
 /// Most components of a field: a tensor in three dimensions.
 pub const MOST_COMPONENTS: usize = 9;

@@ -37,14 +37,25 @@ pub(super) fn solve<T: Scalar, const D: usize, const W: usize>(
     x: &mut [SVector<T, D>],
     axis: usize,
 ) {
+    solve_each::<T, _, W>(rows, x, |x| &mut x[axis]);
+}
+
+/// Solves for one number each.
+pub(super) fn solve_line<T: Scalar, const W: usize>(rows: &[T], x: &mut [T]) {
+    solve_each::<T, _, W>(rows, x, |x| x);
+}
+
+#[inline(always)]
+fn solve_each<T: Scalar, X, const W: usize>(rows: &[T], x: &mut [X], of: impl Fn(&mut X) -> &mut T) {
     let (rows, _) = rows.as_chunks::<W>();
     let mut before = [T::zero(); W];
     for (row, x) in rows.iter().zip(x.iter_mut()) {
-        let mut value = x[axis];
+        let x = of(x);
+        let mut value = *x;
         for k in 0..W - 1 {
             value -= row[k] * before[k + 1];
         }
-        x[axis] = value;
+        *x = value;
         for k in 1..W {
             before[k - 1] = before[k];
         }
@@ -53,8 +64,9 @@ pub(super) fn solve<T: Scalar, const D: usize, const W: usize>(
     // What the rows already solved take from the next ones, nearest first.
     let mut taken = [T::zero(); W];
     for (row, x) in rows.iter().zip(x.iter_mut()).rev() {
-        let value = x[axis] * row[W - 1] - taken[0];
-        x[axis] = value;
+        let x = of(x);
+        let value = *x * row[W - 1] - taken[0];
+        *x = value;
         for k in 0..W - 1 {
             taken[k] = taken[k + 1] + row[W - 2 - k] * value;
         }

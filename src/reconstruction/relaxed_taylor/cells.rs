@@ -146,15 +146,17 @@ pub(super) fn for_each_neighbour<T: Scalar, const D: usize>(
 ) {
     let number = cloud.bins.occupied()[place] as usize;
     let cell = cloud.grid.cell(number);
-    let cells = cloud.grid.cells();
+    let window = cloud.grid.window();
+    let (first, cells) = (window.first(), window.shape());
     let mut stride = 1;
     for axis in 0..D {
-        if cell[axis] > 0
+        let place_on_axis = (cell[axis] - first[axis]) as usize;
+        if place_on_axis > 0
             && let Some(other) = cloud.bins.place_of(number - stride, place)
         {
             f(axis, false, other);
         }
-        if (cell[axis] as usize) + 1 < cells[axis]
+        if place_on_axis + 1 < cells[axis]
             && let Some(other) = cloud.bins.place_of(number + stride, place)
         {
             f(axis, true, other);

@@ -11,6 +11,7 @@ use crate::particles::{Movables, settle};
 use crate::phase::Phase;
 use crate::scalar::Scalar;
 use crate::stepper::spans::{Fault, Moved};
+use crate::stepper::window;
 
 /// What moves particles.
 pub(in super::super) struct Motion<'a, T, const D: usize, L, P> {
@@ -71,7 +72,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
                     Some(false) => {}
                     Some(true) => {
                         moved.crossings += 1;
-                        bound(&cells[p + l]);
+                        if window::is_safe(self.grid, &cells[p + l]) {
+                            bound(&cells[p + l]);
+                        } else {
+                            moved.strayed = true;
+                        }
                     }
                     None => {
                         moved.fault = Some(Fault::Left(first + p + l));

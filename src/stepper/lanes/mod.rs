@@ -95,6 +95,8 @@ pub(super) struct Pass<'a, T, const D: usize, B> {
     grid: &'a Grid<T, D>,
     /// Difference of the numbers of neighbouring DOFs along each axis.
     strides: [usize; D],
+    /// What the numbers of the DOFs are less in the grid's window.
+    before: usize,
 }
 
 impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'a, T, D, B> {
@@ -104,7 +106,13 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'a, T, D, B> {
         for axis in 1..D {
             strides[axis] = strides[axis - 1] * dofs[axis - 1];
         }
-        Self { basis, grid, strides }
+        let first = grid.window().first();
+        Self {
+            basis,
+            grid,
+            strides,
+            before: (0..D).map(|axis| first[axis] as usize * strides[axis]).sum(),
+        }
     }
 
     /// Coordinates in `cell`, from 0 to 1.

@@ -19,7 +19,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     /// The first DOF of `cell`.
     #[inline(always)]
     pub(super) fn first_dof(&self, cell: &Cell<D>) -> usize {
-        (0..D).map(|axis| cell[axis] as usize * self.strides[axis]).sum()
+        let number: usize = (0..D).map(|axis| cell[axis] as usize * self.strides[axis]).sum();
+        number - self.before
     }
 
     /// Number of rows.

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::super::Stepper;
+use super::super::{Stepper, window};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::law::ConstitutiveLaw;
@@ -24,7 +24,7 @@ where
     pub(in super::super) fn advance_both(&mut self, dt: T) -> Result<(), StepError> {
         let (basis, grid, law, phase) = (&self.basis, &self.grid, &self.law, &self.phase);
         let (motion, steps) = (&self.motion[..], self.steps);
-        let (mut crossings, mut left) = (0, None);
+        let (mut crossings, mut strayed, mut left) = (0, false, None);
         let places = self.bins.cells_mut().iter_mut();
         for (p, (mut particle, cell)) in self.particles.movable().each().zip(places).enumerate() {
             let mut v = SVector::zeros();
@@ -51,13 +51,17 @@ where
                 .advance(law, dt, &(v * dt), &increment)
                 .map_err(|flaw| flaw.error(steps, p, L::LIMITS))?;
             match settle(grid, cell, particle.position) {
-                Some(crossed) => crossings += usize::from(crossed),
+                Some(crossed) => {
+                    crossings += usize::from(crossed);
+                    strayed |= crossed && !window::is_safe(grid, cell);
+                }
                 None => {
                     left = Some(p);
                     break;
                 }
             }
         }
+        self.strayed |= strayed;
         self.diagnostics.grid_crossings += crossings;
         self.bins.note_crossings(crossings);
         self.spans.stale |= crossings > 0;

@@ -176,6 +176,8 @@ where
                     });
                 });
             });
+        solid.matrix.complete(None);
+        liquid.matrix.complete(None);
     }
 
     /// Momenta to velocities, with the told values at held DOFs.

@@ -1,0 +1,59 @@
+//! The part of a large grid in which the stepper works.
+//!
+//! Cells and DOFs are numbered, and have a place in memory, in a box around the particles only ([`Window`]), which is laid anew
+//! when a particle comes near its border. Numbers grow in the same order in any box, and so do all sums: where the box
+//! lies changes no bit but through the spans that threads share.
+
+use super::Stepper;
+use crate::basis::BasisFamily;
+use crate::grid::{Cell, Grid, Window};
+use crate::law::ConstitutiveLaw;
+use crate::phase::Phase;
+use crate::reconstruction::Reconstruction;
+use crate::scalar::Scalar;
+
+/// Cells between a particle and the border of the window: functions of a cell may reach into the next one.
+const SAFE: u32 = 1;
+/// Cells beyond which a window is laid at least.
+const MARGIN: usize = 3;
+/// One in so many of its cells along an axis are laid beyond a body, so that a window seldom moves.
+const PART: usize = 8;
+
+/// Whether all that a particle of `cell` may see has numbers.
+#[inline(always)]
+pub(super) fn is_safe<T: Scalar, const D: usize>(grid: &Grid<T, D>, cell: &Cell<D>) -> bool {
+    D == 1 || grid.has_numbers(cell, SAFE)
+}
+
+/// The grid with a window around the particles' `cells`, or without where that would not spare half of it.
+pub(super) fn lay<T: Scalar, const D: usize>(grid: Grid<T, D>, cells: &[Cell<D>]) -> Grid<T, D> {
+    let around = Window::around(cells).widened(|cells| MARGIN + cells / PART);
+    let all = grid.cells();
+    let grid = grid.with_window(around);
+    let total = all.iter().fold(1.0, |product, &n| product * n as f64);
+    if 2.0 * grid.cell_count() as f64 <= total {
+        grid
+    } else {
+        grid.with_window(Window::whole(all))
+    }
+}
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    /// Lays the window anew around the particles, with DOFs to it.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn follow_particles(&mut self) {
+        self.strayed = false;
+        self.grid = lay(self.grid.clone(), self.bins.cells());
+        self.bins.note_numbering();
+        self.spans.forget();
+        self.allocate_dofs();
+    }
+}
