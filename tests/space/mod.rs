@@ -3,6 +3,7 @@
 mod body;
 mod manufactured;
 mod walls;
+mod window;
 
 use materialpoint::scene::Scene;
 
