@@ -1,7 +1,7 @@
 //! Scenes that are compiled in.
 
 /// Names and texts; the first is the default.
-const SCENES: [(&str, &str); 13] = [
+const SCENES: [(&str, &str); 14] = [
     (
         "vibrating-bar-large",
         include_str!("../../examples/scenes/vibrating-bar-large.toml"),
@@ -51,6 +51,7 @@ const SCENES: [(&str, &str); 13] = [
         include_str!("../../examples/scenes/granular-column.toml"),
     ),
     ("dam-break", include_str!("../../examples/scenes/dam-break.toml")),
+    ("slope", include_str!("../../examples/scenes/slope.toml")),
 ];
 
 /// Text of the scene `name`.
