@@ -95,8 +95,10 @@ where
         };
         match start.scene.material.phases {
             Phases::One { .. } => rest.stepper(basis, reconstruction, OnePhase, particles.into_cast()),
-            // Known at compile time: no stepper of two phases is built for a reconstruction or dimension that has none.
-            Phases::Two(_) if const { R::PARTICLE_MATRIX || D > 1 } => Err(SetupError::OnePhaseOnly.into()),
+            // Known at compile time: no stepper is built for what scenes refuse.
+            Phases::Two(_) if const { one_phase_only::<T, D, R, L>() } => {
+                Err(SetupError::OnePhaseOnly.into())
+            }
             Phases::Two(soil) => {
                 let mut particles = particles.into_cast();
                 particles.phase = liquid.into_iter().map(cast_liquid).collect();
@@ -105,6 +107,17 @@ where
             }
         }
     }
+}
+
+/// Whether there is no scene of two phases: relaxed TLS knows one only; in the plane, where each stepper takes seconds to compile,
+/// laws with a history are left to callers that name the types, and so is everything in space.
+const fn one_phase_only<T, const D: usize, R, L>() -> bool
+where
+    T: Scalar,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+{
+    R::PARTICLE_MATRIX || D > 2 || D == 2 && size_of::<L::State>() > 0
 }
 
 /// What a stepper needs besides basis, reconstruction, phase and particles.

@@ -2,6 +2,7 @@
 
 mod body;
 mod manufactured;
+mod saturated;
 mod slope;
 mod walls;
 mod window;

@@ -16,7 +16,10 @@ fn slides(factor: f64) -> f64 {
         format!("material.law.drucker-prager.cohesion={:?}", 1e4 / factor),
         format!("material.law.drucker-prager.friction_angle={angle:?}"),
     ];
-    let scene = scene(Scene::builtin("slope").unwrap(), &set.each_ref().map(String::as_str));
+    let scene = scene(
+        Scene::builtin("slope").unwrap(),
+        &set.each_ref().map(String::as_str),
+    );
     let outcome = run_in::<2>(&scene, None, &mut |_| {}).unwrap();
     let moved = outcome.particles.displacement.iter().map(|u| u.norm());
     moved.fold(0.0, f64::max)

@@ -1,14 +1,14 @@
 //! What scenes of two and three dimensions do not have in this version.
 
 use super::Section;
-use crate::scene::{Basis, Initialise, Phases, ScalarKind, Scene, SceneError};
+use crate::scene::{Basis, Initialise, Law, Phases, ScalarKind, Scene, SceneError};
 
 pub(super) fn check(root: &Section<'_>, scene: &Scene) -> Result<(), SceneError> {
     if scene.dimension() == 1 {
         return Ok(());
     }
     if let Phases::Two(_) = scene.material.phases {
-        return Err(refuse(root, "material", "phases", "1 beyond one dimension")?);
+        two_phases(root, scene)?;
     }
     if scene.method.scalar != ScalarKind::F64 {
         return Err(refuse(root, "method", "scalar", "\"f64\" beyond one dimension")?);
@@ -28,6 +28,22 @@ pub(super) fn check(root: &Section<'_>, scene: &Scene) -> Result<(), SceneError>
         }
     }
     Ok(())
+}
+
+/// In the plane, with a law that remembers nothing but the stress.
+fn two_phases(root: &Section<'_>, scene: &Scene) -> Result<(), SceneError> {
+    if scene.dimension() > 2 {
+        return Err(refuse(root, "material", "phases", "1 in three dimensions")?);
+    }
+    match scene.material.law {
+        Law::LinearElastic { .. } | Law::Hill { .. } => Ok(()),
+        _ => Err(refuse(
+            root,
+            "material",
+            "law",
+            "linear-elastic with two phases in the plane",
+        )?),
+    }
 }
 
 /// The error about a key that is there.

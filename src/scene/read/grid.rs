@@ -1,7 +1,10 @@
 //! `[grid]`
 
 use super::{MOST, Section};
-use crate::scene::{GridSpec, ScalarKind, SceneError};
+use crate::scene::{Body, GridSpec, ScalarKind, SceneError};
+
+/// Most cells beyond one dimension, where only those of a box around the bodies take memory: their numbers have 32 bits.
+const MOST_IN_SPACE: u64 = 4_000_000_000;
 
 /// Cells and spacings below this many round-off units of the largest coordinate would be blurred.
 const ROUND_OFF_UNITS: f64 = 100.0;
@@ -26,10 +29,36 @@ pub(super) fn read(root: &Section<'_>) -> Result<GridSpec, SceneError> {
     let cells_item = section.required("cells", "cells along each axis, a list of whole numbers")?;
     let cells = cells_item.per_axis(dimension, "whole numbers", |n| n.size(1, MOST))?;
     let total = cells.iter().fold(1.0, |total, &n| total * n as f64);
-    if total > MOST as f64 {
-        return Err(cells_item.conflict(&format!("that makes {total:e} cells; expected at most {MOST}")));
+    let most = if dimension == 1 { MOST } else { MOST_IN_SPACE };
+    if total > most as f64 {
+        return Err(cells_item.conflict(&format!("that makes {total:e} cells; expected at most {most}")));
     }
     Ok(GridSpec { min, max, cells })
+}
+
+/// Refuses bodies so far apart that the box around them, whose cells take memory, has too many.
+pub(super) fn check_box(root: &Section<'_>, grid: &GridSpec, bodies: &[Body]) -> Result<(), SceneError> {
+    let along = |axis: usize| {
+        let ends = |corner: fn(&Body) -> &[f64]| {
+            bodies
+                .iter()
+                .filter_map(move |body| corner(body).get(axis).copied())
+        };
+        let low = ends(|body| &body.min).fold(f64::INFINITY, f64::min);
+        let high = ends(|body| &body.max).fold(f64::NEG_INFINITY, f64::max);
+        let [min, max] = [&grid.min, &grid.max].map(|corner| corner.get(axis).copied().unwrap_or(f64::NAN));
+        (high - low) / (max - min) * grid.cells.get(axis).map_or(0.0, |&n| n as f64)
+    };
+    let total: f64 = (0..grid.cells.len()).map(along).product();
+    if total > MOST as f64 {
+        let cells = root
+            .section("grid")?
+            .required("cells", "a list of whole numbers")?;
+        return Err(cells.conflict(&format!(
+            "the box around the bodies has {total:.1e} of them; expected at most {MOST}"
+        )));
+    }
+    Ok(())
 }
 
 /// Refuses cells that the scalar type cannot tell apart.

@@ -60,6 +60,9 @@ pub(super) fn scene(table: &Table) -> Result<Scene, SceneError> {
         time,
         method,
     };
+    if scene.dimension() > 1 {
+        grid::check_box(&root, &scene.grid, &scene.bodies)?;
+    }
     body::check_stress(&root, scene.material.law, scene.dimension())?;
     beyond_one_axis::check(&root, &scene)?;
     agreement::check(&scene)?;
