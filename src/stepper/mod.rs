@@ -232,6 +232,7 @@ where
             true => VelocityMass::Constrained,
             false => velocity_mass,
         };
+        let sums_matrix = D > 1 && !R::AMOUNTS_AT_PARTICLES && velocity_mass != VelocityMass::Lumped;
         let surface_count = surface.len();
         let crossed_count = if R::RELAXES { grid.cell_count() } else { 0 };
         let spans = Spans::new(particles.len());
@@ -255,7 +256,7 @@ where
             spans,
             strayed: false,
             crossed: Vec::with_capacity(crossed_count),
-            pairs: Pairs::new(R::PARTICLE_MATRIX),
+            pairs: Pairs::new(R::PARTICLE_MATRIX || sums_matrix),
             body_forces: Vec::new(),
             face_dofs: Vec::new(),
             velocity_mass,

@@ -1,4 +1,4 @@
-//! Sums over the particles of a cell for each pair of its DOFs.
+//! Sums over the points of a cell for each pair of its DOFs.
 
 use super::matrix::MassMatrix;
 use crate::grid::Cell;
@@ -8,12 +8,12 @@ use crate::scalar::Scalar;
 /// told of more, in the first step.
 const MOST_SEEN: usize = 64;
 
-/// What the particles of one cell add to a mass matrix. All see the same DOFs in the same order.
+/// What the particles, or the quadrature points, of one cell add to a mass matrix. All see the same DOFs in the same order.
 #[derive(Clone, Debug)]
 pub(super) struct Pairs<T, const D: usize> {
     cell: Option<Cell<D>>,
     dofs: Vec<u32>,
-    /// Values of the functions at the particle at hand.
+    /// Values of the functions at the point at hand.
     values: Vec<T>,
     /// Of the lower half, row after row.
     sums: Vec<T>,
@@ -37,7 +37,7 @@ impl<T: Scalar, const D: usize> Pairs<T, D> {
             + size_of::<T>() * (self.values.capacity() + self.sums.capacity())
     }
 
-    /// The next particle is one of `cell`.
+    /// The next point is one of `cell`.
     #[inline(always)]
     pub(super) fn turn_to(&mut self, cell: &Cell<D>, matrix: &mut MassMatrix<T, D>) {
         if self.cell != Some(*cell) {
@@ -48,7 +48,7 @@ impl<T: Scalar, const D: usize> Pairs<T, D> {
         self.values.clear();
     }
 
-    /// The particle sees a DOF.
+    /// The point sees a DOF.
     #[inline(always)]
     pub(super) fn see(&mut self, dof: usize, phi: T) {
         if self.dofs.len() == self.values.len() {
@@ -57,7 +57,7 @@ impl<T: Scalar, const D: usize> Pairs<T, D> {
         self.values.push(phi);
     }
 
-    /// The particle has seen all its DOFs and has this mass.
+    /// The point has seen all its DOFs and has this mass.
     #[inline(always)]
     pub(super) fn add(&mut self, mass: T) {
         let count = self.values.len();

@@ -280,7 +280,7 @@ where
     }
 
     fn integrate_lattice(&mut self) {
-        let (basis, grid) = (&self.basis, &self.grid);
+        let (basis, grid, pairs) = (&self.basis, &self.grid, &mut self.pairs);
         let Dofs { matrix, velocity, .. } = &mut self.dofs;
         matrix.clear();
         velocity.fill(SVector::zeros());
@@ -289,12 +289,14 @@ where
         self.reconstruction
             .integrate_conserved(&cloud, amounts, |point, amount| {
                 let (cell, x) = (&point.cell, &point.position);
-                basis.for_each_at_fixed_point(grid, cell, x, |i, phi_i, _| {
-                    velocity[i] += amount.momentum * phi_i;
-                    let m = amount.mass * phi_i;
-                    basis.for_each_at_fixed_point(grid, cell, x, |j, phi_j, _| matrix.add(i, j, m * phi_j));
+                pairs.turn_to(cell, matrix);
+                basis.for_each_at_fixed_point(grid, cell, x, |i, phi, _| {
+                    velocity[i] += amount.momentum * phi;
+                    pairs.see(i, phi);
                 });
+                pairs.add(amount.mass);
             });
+        pairs.flush(matrix);
     }
 
     fn integrate_band(&mut self) {
