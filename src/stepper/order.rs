@@ -20,13 +20,13 @@ const BACKWARD: usize = 8;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Order {
     /// Number, in the order they were given in, of the particle at each place; empty where they stay in that order.
-    numbers: Vec<u32>,
+    pub(super) numbers: Vec<u32>,
     /// The place that each particle is to go to.
     targets: Vec<u32>,
     /// The place of each cell's first particle.
     starts: Vec<u32>,
-    crossings: usize,
-    moved: bool,
+    pub(super) crossings: usize,
+    pub(super) moved: bool,
 }
 
 impl Order {
