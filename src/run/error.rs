@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::checkpoint::CheckpointError;
 use crate::error::{GridError, SetupError, StepError};
 use crate::method::Method;
 use crate::output::OutputError;
@@ -26,6 +27,9 @@ pub enum RunError {
     /// A file cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// The run cannot be resumed from that checkpoint.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// No such combination of basis and reconstruction.
     #[error("method {0} does not exist")]
     NoSuchMethod(Method),
