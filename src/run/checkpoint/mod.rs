@@ -245,3 +245,6 @@ fn take_text(from: &mut impl Read) -> io::Result<String> {
         _ => Err(io::ErrorKind::UnexpectedEof.into()),
     }
 }
+
+#[cfg(test)]
+mod tests;

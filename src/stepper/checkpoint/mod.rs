@@ -150,3 +150,6 @@ impl<T: Scalar> Diagnostics<T> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;
