@@ -13,6 +13,7 @@ use materialpoint::method::{Method, MethodVisitor};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, OnePhase, Phase, PoreLiquid, TwoPhase};
 use materialpoint::reconstruction::Reconstruction;
+use materialpoint::record::Record;
 use materialpoint::stepper::{
     FaceCondition, Forcing, PoreCondition, Setup, Simulation, Stepper, SurfacePoint,
 };
@@ -74,7 +75,7 @@ fn stepper<B, R, P>(
 where
     B: BasisFamily<f64, 1> + 'static,
     R: Reconstruction<f64, 1> + Clone + 'static,
-    P: Phase<f64, 1> + Clone + 'static,
+    P: Phase<f64, 1, Particle: Record<f64>> + Clone + 'static,
 {
     let grid = Grid::new(vector![0.0], vector![1.0], [CELLS]).expect("a valid grid");
     let points = lattice(&grid, grid.min(), grid.max(), [PER_CELL]);

@@ -1,5 +1,7 @@
 //! Typed errors: what is wrong, where, and what to do.
 
+use std::io;
+
 use thiserror::Error;
 
 /// A grid that cannot be built.
@@ -128,4 +130,33 @@ pub enum StepError {
         /// The step asked for (s).
         value: f64,
     },
+}
+
+/// A saved state that a stepper cannot take over.
+#[derive(Debug, Error)]
+pub enum RestoreError {
+    /// It cannot be read, or ends early.
+    #[error("the state cannot be read ({0})")]
+    Read(#[from] io::Error),
+    /// It is that of another stepper.
+    #[error("the state has {found} {what}; expected {expected}")]
+    Other {
+        /// What there is another number of.
+        what: &'static str,
+        /// Its number in the state.
+        found: usize,
+        /// Its number in the stepper.
+        expected: usize,
+    },
+    /// It was changed.
+    #[error("the state is damaged: {what} {index} makes no sense")]
+    Invalid {
+        /// What is wrong.
+        what: &'static str,
+        /// Which of them.
+        index: usize,
+    },
+    /// Particles that no run leaves behind.
+    #[error("the state is damaged: {0}")]
+    Particles(#[from] SetupError),
 }

@@ -74,6 +74,7 @@ pub mod particles;
 pub mod phase;
 pub mod quadrature;
 pub mod reconstruction;
+pub mod record;
 pub mod reference;
 pub mod scalar;
 pub mod stepper;

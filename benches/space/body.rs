@@ -7,6 +7,7 @@ use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Reconstruction;
+use materialpoint::record::Record;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
 use nalgebra::SVector;
 
@@ -72,7 +73,7 @@ impl Body {
     ) -> Box<dyn Simulation<D> + Send>
     where
         R: Reconstruction<f64, D> + Clone + Send + 'static,
-        L: ConstitutiveLaw<f64, D, State: Send> + Clone + Send + 'static,
+        L: ConstitutiveLaw<f64, D, State: Send + Record<f64>> + Clone + Send + 'static,
     {
         let mut particles = Particles::at_rest(&self.points(), DENSITY);
         for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {

@@ -35,6 +35,9 @@ enum Command {
     Run {
         /// Scene file (TOML), or the name of a compiled-in scene (see `list`).
         scene: String,
+        /// Go on from a checkpoint, which a run with output.checkpoint_every leaves in its folder.
+        #[arg(long, value_name = "FILE")]
+        resume: Option<PathBuf>,
     },
     /// Compare methods and resolutions on one scene: speed against error.
     Study {
@@ -96,7 +99,7 @@ pub(crate) fn execute(arguments: &Arguments) -> Result<(), Failure> {
     match command {
         None => study::default_study(shared, study),
         Some(Command::Study { scene }) => study::study_scene(scene, shared, study),
-        Some(Command::Run { scene }) => run::run_scene(scene, shared),
+        Some(Command::Run { scene, resume }) => run::run_scene(scene, resume.as_deref(), shared),
         Some(Command::Check { scene }) => check::check_scene(scene, shared),
         Some(Command::List) => print::print(&list::list()),
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use materialpoint::output::Folder;
-use materialpoint::run::{InSpace, Progress, Summary, run, run_in};
+use materialpoint::run::{InSpace, Outcome, Progress, RunError, Summary, resume_in, run_in};
 use materialpoint::scene::{Scene, SceneError};
 use materialpoint::study::{write_fields, write_maps};
 
@@ -21,7 +21,7 @@ pub(super) fn load(name: &str, set: &[String]) -> Result<Scene, SceneError> {
     }
 }
 
-pub(super) fn run_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
+pub(super) fn run_scene(name: &str, resume: Option<&Path>, shared: &Shared) -> Result<(), Failure> {
     let scene = load(name, &shared.set)?;
     let folder = Folder::create(&shared.out)?;
     let progress_bar = bar(shared.quiet, 0, "steps");
@@ -29,10 +29,15 @@ pub(super) fn run_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
         progress_bar.set_length(progress.steps as u64);
         progress_bar.set_position(progress.step as u64);
     };
+    let begin = Begin {
+        scene: &scene,
+        resume,
+        folder: &folder,
+    };
     let done = match scene.dimension() {
-        1 => on_one_axis(&scene, &folder, &mut progress),
-        2 => in_space::<2>(&scene, &folder, &mut progress),
-        _ => in_space::<3>(&scene, &folder, &mut progress),
+        1 => on_one_axis(&begin, &mut progress),
+        2 => in_space::<2>(&begin, &mut progress),
+        _ => in_space::<3>(&begin, &mut progress),
     };
     progress_bar.finish_and_clear();
     let (summary, files) = done?;
@@ -43,20 +48,41 @@ pub(super) fn run_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     print(&summary_text(&summary, &files))
 }
 
+/// What is run, from where, and where its files go.
+struct Begin<'a> {
+    scene: &'a Scene,
+    resume: Option<&'a Path>,
+    folder: &'a Folder,
+}
+
+impl Begin<'_> {
+    fn run<const D: usize>(&self, progress: &mut dyn FnMut(Progress)) -> Result<Outcome<D>, RunError>
+    where
+        Scene: InSpace<D>,
+    {
+        match self.resume {
+            None => run_in(self.scene, Some(self.folder), progress),
+            Some(checkpoint) => resume_in(self.scene, checkpoint, Some(self.folder), progress),
+        }
+    }
+}
+
 type Done = Result<(Summary, Vec<PathBuf>), Failure>;
 
-fn on_one_axis(scene: &Scene, folder: &Folder, progress: &mut dyn FnMut(Progress)) -> Done {
-    let mut outcome = run(scene, Some(folder), progress)?;
-    outcome.files.push(write_fields(&outcome, folder)?);
+fn on_one_axis(begin: &Begin<'_>, progress: &mut dyn FnMut(Progress)) -> Done {
+    let mut outcome = begin.run::<1>(progress)?;
+    outcome.files.push(write_fields(&outcome, begin.folder)?);
     Ok((outcome.summary, outcome.files))
 }
 
-fn in_space<const D: usize>(scene: &Scene, folder: &Folder, progress: &mut dyn FnMut(Progress)) -> Done
+fn in_space<const D: usize>(begin: &Begin<'_>, progress: &mut dyn FnMut(Progress)) -> Done
 where
     Scene: InSpace<D>,
 {
-    let mut outcome = run_in::<D>(scene, Some(folder), progress)?;
-    outcome.files.push(write_maps(scene, &outcome, folder)?);
+    let mut outcome = begin.run::<D>(progress)?;
+    outcome
+        .files
+        .push(write_maps(begin.scene, &outcome, begin.folder)?);
     Ok((outcome.summary, outcome.files))
 }
 

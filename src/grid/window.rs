@@ -11,6 +11,11 @@ pub struct Window<const D: usize> {
 }
 
 impl<const D: usize> Window<D> {
+    /// Of `shape` cells along each axis, from the cell `first` on.
+    pub fn new(first: Cell<D>, shape: [usize; D]) -> Self {
+        Self { first, shape }
+    }
+
     /// All of `cells` cells along each axis.
     pub fn whole(cells: [usize; D]) -> Self {
         Self {

@@ -10,6 +10,7 @@ mod logarithmic;
 mod moduli;
 mod neo_hookean;
 mod newtonian_fluid;
+mod record;
 mod st_venant_kirchhoff;
 mod von_mises;
 

@@ -42,4 +42,4 @@ pub use table::{Records, Table, number};
 pub use vtu::{Components, PointCloud, PointField};
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

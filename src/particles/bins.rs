@@ -95,7 +95,7 @@ impl<const D: usize> Bins<D> {
         if self.start.len() != grid.cell_count() + 1 {
             self.start = vec![0; grid.cell_count() + 1];
             self.order = vec![0; self.cell_of.len()];
-            self.occupied.reserve_exact(grid.cell_count());
+            self.occupied = Vec::with_capacity(grid.cell_count());
         }
         self.start.fill(0);
         for cell in &self.cell_of {

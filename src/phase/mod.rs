@@ -1,6 +1,7 @@
 //! Phases: what shares the pores with the solid.
 
 mod one;
+mod record;
 mod two;
 
 pub use one::OnePhase;

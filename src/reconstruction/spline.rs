@@ -56,7 +56,9 @@ impl<T: Scalar> CubicSpline<T> {
         }
     }
 
-    /// Keeps `order` sorted: an insertion sort, since from step to step it hardly changes.
+    /// Keeps `order` sorted: an insertion sort, since from step to step it hardly changes. Particles at one position come by
+    /// their index, so that the order depends on where they are now and not on how they came there: a resumed run, which
+    /// does not know that, adds their values up in the same order.
     fn sort(&mut self, positions: &[SVector<T, 1>]) {
         let n = positions.len();
         if self.order.len() != n {
@@ -74,7 +76,11 @@ impl<T: Scalar> CubicSpline<T> {
             let moved = self.order[i];
             let x = positions[moved as usize][0];
             let mut j = i;
-            while j > 0 && positions[self.order[j - 1] as usize][0] > x {
+            let after = |other: u32| {
+                let y = positions[other as usize][0];
+                y > x || y == x && other > moved
+            };
+            while j > 0 && after(self.order[j - 1]) {
                 self.order[j] = self.order[j - 1];
                 j -= 1;
             }

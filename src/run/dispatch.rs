@@ -13,6 +13,7 @@ use crate::method::{KnownIn, MethodVisitor, ReconstructionKind};
 use crate::particles::Particles;
 use crate::phase::{OnePhase, Phase, PoreLiquid, TwoPhase};
 use crate::reconstruction::Reconstruction;
+use crate::record::Record;
 use crate::scalar::Scalar;
 use crate::scene::{Phases, Scene};
 use crate::stepper::{Setup, Simulation, Stepper, SurfacePoint};
@@ -57,6 +58,7 @@ where
     where
         T: Scalar,
         L: ConstitutiveLaw<T, D> + Clone + 'static,
+        L::State: Record<T>,
     {
         let method = self.scene.method.method();
         let built = method.dispatch(WithLaw { start: self, law });
@@ -74,6 +76,7 @@ impl<T, L, const D: usize> MethodVisitor<T, D> for WithLaw<'_, L, D>
 where
     T: Scalar,
     L: ConstitutiveLaw<T, D> + Clone + 'static,
+    L::State: Record<T>,
 {
     type Output = Built<D>;
 
@@ -140,7 +143,9 @@ impl<L> Rest<'_, L> {
         B: BasisFamily<T, D> + 'static,
         R: Reconstruction<T, D> + Clone + 'static,
         L: ConstitutiveLaw<T, D> + Clone + 'static,
+        L::State: Record<T>,
         P: Phase<T, D> + Clone + 'static,
+        P::Particle: Record<T>,
     {
         if self.scene.bodies.iter().any(|body| body.stress.is_some()) {
             particles.start_under_stress(&self.law, |_, _| None)?;

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::checkpoint::CheckpointError;
 use crate::error::{GridError, SetupError, StepError};
 use crate::method::Method;
 use crate::output::OutputError;
@@ -26,6 +27,9 @@ pub enum RunError {
     /// A file cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// The run cannot be resumed from that checkpoint.
+    #[error(transparent)]
+    Checkpoint(Box<CheckpointError>),
     /// No such combination of basis and reconstruction.
     #[error("method {0} does not exist")]
     NoSuchMethod(Method),
@@ -103,5 +107,11 @@ fn advice(dt: f64, critical: Option<f64>, remedy: &str) -> String {
             "time.step = {dt:.3e} s is within the largest stable step of the initial layout, {limit:.3e} s, so look at the loads, the grid's extent and the method"
         ),
         None => format!("time.step = {dt:.3e} s; look at the loads and the grid's extent"),
+    }
+}
+
+impl From<CheckpointError> for RunError {
+    fn from(error: CheckpointError) -> Self {
+        Self::Checkpoint(Box::new(error))
     }
 }

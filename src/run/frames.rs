@@ -6,7 +6,7 @@ use super::error::RunError;
 use super::fields::{FieldValues, for_each_field};
 use super::norms::Exact;
 use super::particle_table::particle_table;
-use crate::output::{Components, Folder, PointCloud, PointField, Series};
+use crate::output::{Components, Folder, PointCloud, PointField, Series, SeriesFrame};
 use crate::particles::Particles;
 use crate::phase::PoreLiquid;
 use crate::scene::{ParticleOutput, Scene};
@@ -16,17 +16,47 @@ pub(super) struct Frames<'a> {
     scene: &'a Scene,
     folder: Option<&'a Folder>,
     series: Series,
+    /// Those of either format, with when they are of.
+    written: Vec<SeriesFrame>,
     pub(super) files: Vec<PathBuf>,
 }
 
 impl<'a> Frames<'a> {
-    pub(super) fn new(scene: &'a Scene, folder: Option<&'a Folder>) -> Self {
+    /// `written` are the frames that there are, of an earlier part of the run.
+    pub(super) fn new(scene: &'a Scene, folder: Option<&'a Folder>, written: Vec<SeriesFrame>) -> Self {
+        let mut series = Series::new("particles");
+        let in_series = written.iter().filter(|frame| frame.file.ends_with(".vtu"));
+        series.frames.extend(in_series.cloned());
+        let place = |frame: &SeriesFrame| folder.map(|folder| folder.path().join(&frame.file));
         Self {
             scene,
             folder,
-            series: Series::new("particles"),
-            files: Vec::new(),
+            series,
+            files: written.iter().filter_map(place).collect(),
+            written,
         }
+    }
+
+    /// Where files go.
+    pub(super) fn folder(&self) -> Option<&'a Folder> {
+        self.folder
+    }
+
+    /// The frames so far.
+    pub(super) fn written(&self) -> &[SeriesFrame] {
+        &self.written
+    }
+
+    /// What the user should know if frames of the earlier part are not there: the run was resumed into another folder.
+    pub(super) fn warning(&self) -> Option<String> {
+        let missing = self.files.iter().filter(|file| !file.exists()).count();
+        (missing > 0).then(|| {
+            format!(
+                "{missing} of the {} frames written before the checkpoint are not in the output folder; copy them there, or \
+                 resume with --out naming the folder that has them",
+                self.files.len()
+            )
+        })
     }
 
     /// Whether anything is written at all.
@@ -58,10 +88,12 @@ impl<'a> Frames<'a> {
                 });
                 let table = particle_table(self.scene, particles, liquid);
                 self.files.push(table.write_csv(folder, &name)?);
+                self.written.push(SeriesFrame { time, file: name });
             }
             ParticleOutput::Vtu => {
                 let path = self.series.add(folder, time, &cloud(particles, liquid))?;
                 self.files.push(path);
+                self.written.extend(self.series.frames.last().cloned());
                 if step.is_none() {
                     self.files.push(folder.path().join("particles.pvd"));
                 }

@@ -6,6 +6,7 @@ use crate::law::{
     ConstitutiveLaw, DeformationGradient, DruckerPrager, DruckerPragerState, ElasticStretch, Hencky,
     NeoHookean, NewtonianFluid, StVenantKirchhoff, VolumeRatio, VonMises, VonMisesState,
 };
+use crate::record::Record;
 use crate::scalar::Scalar;
 
 /// One of those laws. One type for all: another for each would multiply the steppers to compile, and they take seconds each.
@@ -31,6 +32,48 @@ pub(super) enum History<T, const D: usize> {
     VonMises(VonMisesState<T, D>),
     DruckerPrager(DruckerPragerState<T, D>),
     Volume(VolumeRatio<T>),
+}
+
+/// The first number says whose history follows.
+impl<T: Scalar, const D: usize> Record<T> for History<T, D> {
+    fn put(&self, out: &mut impl FnMut(T)) {
+        let mut whose = |number: u8| out(T::lit(f64::from(number)));
+        match self {
+            Self::None => whose(0),
+            Self::Gradient(own) => {
+                whose(1);
+                own.put(out);
+            }
+            Self::Stretch(own) => {
+                whose(2);
+                own.put(out);
+            }
+            Self::VonMises(own) => {
+                whose(3);
+                own.put(out);
+            }
+            Self::DruckerPrager(own) => {
+                whose(4);
+                own.put(out);
+            }
+            Self::Volume(own) => {
+                whose(5);
+                own.put(out);
+            }
+        }
+    }
+
+    fn take(from: &mut impl FnMut() -> T) -> Option<Self> {
+        let whose = from().primal();
+        match (0..=5_u8).find(|&number| f64::from(number) == whose)? {
+            0 => Some(Self::None),
+            1 => Record::take(from).map(Self::Gradient),
+            2 => Record::take(from).map(Self::Stretch),
+            3 => Record::take(from).map(Self::VonMises),
+            4 => Record::take(from).map(Self::DruckerPrager),
+            _ => Record::take(from).map(Self::Volume),
+        }
+    }
 }
 
 /// Of each law of the enum its history. That of another law, which no particle has, counts as none.

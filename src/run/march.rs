@@ -1,8 +1,10 @@
 //! The step loop.
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use super::Progress;
+use super::checkpoint;
 use super::critical_step_in;
 use super::error::RunError;
 use super::frames::Frames;
@@ -16,15 +18,37 @@ use crate::stepper::Simulation;
 /// Energy is sampled this often in a run: often enough to see it grow, seldom enough to cost nothing.
 pub(super) const ENERGY_SAMPLES: usize = 1000;
 
-/// Figures gathered along the way.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct March {
-    pub(super) wall: Duration,
+/// A run to march through.
+pub(super) struct Journey<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) schedule: &'a Schedule,
+    /// How often the energy is sampled.
+    pub(super) samples: usize,
+    /// Where it begins.
+    pub(super) from: Milestone,
+}
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Milestone {
+    /// Steps taken.
+    pub(super) done: usize,
     pub(super) energy: EnergyRange,
 }
 
+/// Figures gathered along the way.
+#[derive(Clone, Debug, Default)]
+pub(super) struct March {
+    /// Time of the steps on the clock, and how many were taken in it: not those before a checkpoint.
+    pub(super) wall: Duration,
+    pub(super) steps: usize,
+    pub(super) energy: EnergyRange,
+    /// Where the last checkpoint is.
+    pub(super) checkpoint: Option<PathBuf>,
+}
+
 /// Total energy at the start, at the end, and its range.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EnergyRange {
     pub(super) initial: f64,
     pub(super) last: f64,
@@ -59,29 +83,65 @@ impl EnergyRange {
     }
 }
 
-/// Steps `simulation` to the end, writing particles when the scene asks for it, and sampling the energy `samples` times.
+/// What is to be done after a step.
+struct Due {
+    frame: bool,
+    sample: bool,
+    checkpoint: bool,
+}
+
+impl Journey<'_> {
+    fn due(&self, done: usize) -> Due {
+        let output = &self.scene.output;
+        let steps = self.schedule.steps;
+        let every = |period: usize| period > 0 && done.is_multiple_of(period);
+        let frame = every(output.every) && done < steps;
+        let sample_every = steps.div_ceil(self.samples.max(1)).max(1);
+        Due {
+            frame,
+            sample: done.is_multiple_of(sample_every) || done == steps || frame,
+            // It samples no energy: a run with checkpoints reports what one without them does.
+            checkpoint: every(output.checkpoint_every),
+        }
+    }
+}
+
+/// Steps `simulation` to the end, writing particles and checkpoints when the scene asks for it, and sampling the energy.
 pub(super) fn march<const D: usize>(
-    scene: &Scene,
+    journey: &Journey<'_>,
     simulation: &mut dyn Simulation<D>,
-    schedule: &Schedule,
-    samples: usize,
     frames: &mut Frames<'_>,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<March, RunError>
 where
     Scene: InSpace<D>,
 {
-    let mut march = March::default();
-    let start = march.energy.sample(simulation.energy().total());
-    start.map_err(|value| RunError::NoEnergyAtStart { value })?;
-    if frames.begin_at_start() {
+    let Journey {
+        scene,
+        schedule,
+        from,
+        ..
+    } = journey;
+    let steps = schedule.steps;
+    let mut march = March {
+        energy: from.energy,
+        ..March::default()
+    };
+    // A resumed run has begun already; one that has nothing left to do may end earlier than it was to.
+    if from.done == 0 || from.done == steps {
+        let start = march.energy.sample(simulation.energy().total());
+        start.map_err(|value| RunError::NoEnergyAtStart { value })?;
+    }
+    if from.done == 0 && frames.begin_at_start() {
         frames.write(Some(0), 0.0, &simulation.particles(), &simulation.liquid())?;
     }
-    let steps = schedule.steps;
     let driver = scene.driver()?;
-    let sample_every = steps.div_ceil(samples.max(1)).max(1);
+    progress(Progress {
+        step: from.done,
+        steps,
+    });
     let mut begun = Instant::now();
-    for step in 0..steps {
+    for step in from.done..steps {
         let dt = schedule.size(step);
         let forcing = forcing(scene, schedule.time(step), dt)?;
         if let Some(driver) = &driver {
@@ -96,30 +156,56 @@ where
                 remedy,
             });
         }
+        march.steps += 1;
         let done = step + 1;
-        let writes = scene.output.every > 0 && done % scene.output.every == 0 && done < steps;
-        if done % sample_every == 0 || done == steps || writes {
+        let due = journey.due(done);
+        if due.sample || due.checkpoint {
             // The clock runs for the step loop only.
             march.wall += begun.elapsed();
-            if let Err(value) = march.energy.sample(simulation.energy().total()) {
-                let (critical, remedy) = limit::<D>(scene);
-                return Err(RunError::NoEnergy {
-                    step: done,
-                    value,
-                    dt,
-                    critical,
-                    remedy,
-                });
-            }
-            if writes && frames.are_wanted() {
+            check_energy(scene, simulation, &mut march, &due, (done, dt))?;
+            if due.frame && frames.are_wanted() {
                 let (particles, liquid) = (simulation.particles(), simulation.liquid());
                 frames.write(Some(done), schedule.time(done), &particles, &liquid)?;
+            }
+            if due.checkpoint {
+                let energy = march.energy;
+                let milestone = Milestone { done, energy };
+                march.checkpoint = checkpoint::write((scene, schedule), &milestone, frames, simulation)?;
             }
             progress(Progress { step: done, steps });
             begun = Instant::now();
         }
     }
     Ok(march)
+}
+
+/// Samples the energy if that is due. A checkpoint needs one too: of numbers that are none nothing good comes.
+fn check_energy<const D: usize>(
+    scene: &Scene,
+    simulation: &dyn Simulation<D>,
+    march: &mut March,
+    due: &Due,
+    (step, dt): (usize, f64),
+) -> Result<(), RunError>
+where
+    Scene: InSpace<D>,
+{
+    let value = simulation.energy().total();
+    let fine = match due.sample {
+        true => march.energy.sample(value).is_ok(),
+        false => value.is_finite(),
+    };
+    if fine {
+        return Ok(());
+    }
+    let (critical, remedy) = limit::<D>(scene);
+    Err(RunError::NoEnergy {
+        step,
+        value,
+        dt,
+        critical,
+        remedy,
+    })
 }
 
 /// Largest stable step (s) of the initial layout, if it can be found, and what helps against a larger one.

@@ -1,5 +1,6 @@
 //! Running a scene.
 
+mod checkpoint;
 mod dispatch;
 mod error;
 mod fields;
@@ -19,6 +20,7 @@ mod state;
 mod summary;
 mod surface;
 
+pub use checkpoint::CheckpointError;
 pub use error::RunError;
 pub use fields::FieldValues;
 pub use limits::mechanism;
@@ -26,11 +28,12 @@ pub use norms::{ErrorNorms, Exact};
 pub use space::InSpace;
 pub use summary::{ConservationSummary, EnergySummary, MethodSummary, Summary};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use checkpoint::Checkpoint;
 use frames::Frames;
 use loads::forcing;
-use march::{ENERGY_SAMPLES, march};
+use march::{ENERGY_SAMPLES, Journey, Milestone, march};
 use schedule::Schedule;
 
 use crate::output::Folder;
@@ -99,32 +102,74 @@ pub fn run_in<const D: usize>(
 where
     Scene: InSpace<D>,
 {
+    run_from(scene, None, folder, progress)
+}
+
+/// Goes on with a run of `scene` where it was when the file `checkpoint` was written, and ends as the run would have that was
+/// never interrupted: with the same numbers to the bit, and the same files if `folder` is the same.
+///
+/// The checkpoint must be of this scene; only title, output and, if the step is given as a number, the end may differ. A later
+/// end makes the run longer; the range of the energy then knows the earlier part by the samples that were taken there. A
+/// checkpoint of the last step leaves nothing to do but to write the files of the end. The speed in the summary is that of the
+/// steps taken now.
+///
+/// # Errors
+/// See [`RunError`]; [`CheckpointError`] says why the file does not serve. Files written before the error stay.
+pub fn resume_in<const D: usize>(
+    scene: &Scene,
+    checkpoint: &Path,
+    folder: Option<&Folder>,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Outcome<D>, RunError>
+where
+    Scene: InSpace<D>,
+{
+    run_from(scene, Some(checkpoint), folder, progress)
+}
+
+fn run_from<const D: usize>(
+    scene: &Scene,
+    checkpoint: Option<&Path>,
+    folder: Option<&Folder>,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Outcome<D>, RunError>
+where
+    Scene: InSpace<D>,
+{
     check_dimension::<D>(scene)?;
     // Before the run's own simulation is there: the critical step takes one as large.
     let schedule = Schedule::new(scene)?;
-    let warnings = limits::warnings(scene, &schedule, || critical_step_in(scene))?;
+    let open = |path: &Path| Checkpoint::open(path, scene, &schedule);
+    let checkpoint = checkpoint.map(open).transpose()?;
+    let mut warnings = limits::warnings(scene, &schedule, || critical_step_in(scene))?;
     let mut simulation = scene.build(schedule.dt)?;
-    let mut frames = Frames::new(scene, folder);
-    let march = march(
+    let (from, written) = match checkpoint {
+        Some(checkpoint) => checkpoint.restore(simulation.as_mut())?,
+        None => (Milestone::default(), Vec::new()),
+    };
+    let mut frames = Frames::new(scene, folder, written);
+    warnings.extend(frames.warning());
+    let journey = Journey {
         scene,
-        simulation.as_mut(),
-        &schedule,
-        ENERGY_SAMPLES,
-        &mut frames,
-        progress,
-    )?;
-    let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, march);
+        schedule: &schedule,
+        samples: ENERGY_SAMPLES,
+        from,
+    };
+    let march = march(&journey, simulation.as_mut(), &mut frames, progress)?;
+    let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, &march);
     summary.warnings = warnings;
     let (particles, liquid) = simulation.into_particles();
     frames.write(None, schedule.end, &particles, &liquid)?;
     let exact = scene.exact(&particles, &schedule)?;
     summary.errors = ErrorNorms::all(&particles, &liquid, &exact);
+    let mut files = frames.files;
+    files.extend(march.checkpoint);
     Ok(Outcome {
         summary,
         particles,
         liquid,
         exact,
-        files: frames.files,
+        files,
     })
 }
 
@@ -161,8 +206,14 @@ where
 {
     let schedule = Schedule::new(scene)?;
     let mut simulation = scene.build(schedule.dt)?;
-    let mut frames = Frames::new(scene, None);
-    let march = march(scene, simulation.as_mut(), &schedule, 1, &mut frames, &mut |_| {})?;
+    let mut frames = Frames::new(scene, None, Vec::new());
+    let journey = Journey {
+        scene,
+        schedule: &schedule,
+        samples: 1,
+        from: Milestone::default(),
+    };
+    let march = march(&journey, simulation.as_mut(), &mut frames, &mut |_| {})?;
     Ok(march.wall.as_secs_f64())
 }
 

@@ -107,15 +107,15 @@ pub struct Summary {
     pub cells: usize,
     /// Number of DOFs.
     pub dofs: usize,
-    /// Steps taken.
+    /// Steps taken, those before a checkpoint included.
     pub steps: usize,
     /// Time reached (s).
     pub time: f64,
     /// Size of a step (s).
     pub time_step: f64,
-    /// Time of the step loop on the clock (s).
+    /// Time of the step loop on the clock (s); of a resumed run that of the steps taken since.
     pub wall_seconds: f64,
-    /// Particles times steps per second.
+    /// Particles times steps per second; of a resumed run those of the steps taken since.
     pub particle_steps_per_second: f64,
     /// Memory per particle, the grid's share included.
     pub bytes_per_particle: f64,
@@ -140,10 +140,15 @@ impl Summary {
         scene: &Scene,
         simulation: &dyn Simulation<D>,
         schedule: &Schedule,
-        march: March,
+        march: &March,
     ) -> Self {
         let wall_seconds = march.wall.as_secs_f64();
         let particles = simulation.particle_count();
+        // A run that was resumed at its end takes none.
+        let particle_steps_per_second = match march.steps {
+            0 => 0.0,
+            steps => particles as f64 * steps as f64 / wall_seconds,
+        };
         let diagnostics = simulation.diagnostics();
         let liquid = diagnostics.liquid_conservation;
         let conservation = [("solid", Some(diagnostics.conservation)), ("liquid", liquid)]
@@ -163,7 +168,7 @@ impl Summary {
             time: schedule.end,
             time_step: schedule.dt,
             wall_seconds,
-            particle_steps_per_second: particles as f64 * schedule.steps as f64 / wall_seconds,
+            particle_steps_per_second,
             bytes_per_particle: simulation.bytes_per_particle(),
             grid_crossings: diagnostics.grid_crossings,
             reduced_cells: diagnostics.reduced_cells,

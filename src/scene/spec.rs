@@ -484,4 +484,6 @@ pub struct OutputSpec {
     pub particles: ParticleOutput,
     /// Steps between outputs; 0 = the end only.
     pub every: usize,
+    /// Steps between checkpoints; 0 = none.
+    pub checkpoint_every: usize,
 }

@@ -17,6 +17,7 @@ mod acceleration;
 mod advance;
 mod body_forces;
 mod cell_sums;
+mod checkpoint;
 mod contact;
 mod critical;
 mod diagnostics;

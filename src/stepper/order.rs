@@ -20,13 +20,13 @@ const BACKWARD: usize = 8;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Order {
     /// Number, in the order they were given in, of the particle at each place; empty where they stay in that order.
-    numbers: Vec<u32>,
+    pub(super) numbers: Vec<u32>,
     /// The place that each particle is to go to.
     targets: Vec<u32>,
     /// The place of each cell's first particle.
     starts: Vec<u32>,
-    crossings: usize,
-    moved: bool,
+    pub(super) crossings: usize,
+    pub(super) moved: bool,
 }
 
 impl Order {
@@ -42,6 +42,13 @@ impl Order {
             starts: vec![0; grid.cell_count()],
             crossings: cells.len(),
             moved: false,
+        }
+    }
+
+    /// Makes room for the cells of another window.
+    pub(super) fn follow_window<T: Scalar, const D: usize>(&mut self, grid: &Grid<T, D>) {
+        if !self.numbers.is_empty() {
+            self.starts = vec![0; grid.cell_count()];
         }
     }
 
@@ -69,8 +76,7 @@ impl Order {
             return false;
         }
         self.moved = true;
-        self.starts.clear();
-        self.starts.resize(grid.cell_count(), 0);
+        self.starts.fill(0);
         for cell in cells.iter() {
             self.starts[grid.linear(cell)] += 1;
         }

@@ -1,17 +1,20 @@
 //! Steppers behind one object-safe face, for callers that choose the method at run time.
 
+use std::io::{self, Read, Write};
+
 use nalgebra::SVector;
 
 use super::{
     Conservation, CriticalStep, Diagnostics, Energy, FaceCondition, Forcing, PoreCondition, Stepper,
 };
 use crate::basis::BasisFamily;
-use crate::error::StepError;
+use crate::error::{RestoreError, StepError};
 use crate::grid::Face;
 use crate::law::ConstitutiveLaw;
 use crate::particles::Particles;
 use crate::phase::{Phase, PoreLiquid};
 use crate::reconstruction::Reconstruction;
+use crate::record::Record;
 use crate::scalar::Scalar;
 
 /// Any stepper, in `f64` whatever its own scalar is: one virtual call per step.
@@ -47,6 +50,18 @@ pub trait Simulation<const D: usize> {
     /// See [`Stepper::into_critical_step`].
     fn into_critical_step(self: Box<Self>, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>>;
 
+    /// See [`Stepper::save`].
+    ///
+    /// # Errors
+    /// As there.
+    fn save(&self, out: &mut dyn Write) -> io::Result<()>;
+
+    /// See [`Stepper::restore`].
+    ///
+    /// # Errors
+    /// As there.
+    fn restore(&mut self, from: &mut dyn Read) -> Result<(), RestoreError>;
+
     /// Number of particles.
     fn particle_count(&self) -> usize;
 
@@ -63,7 +78,9 @@ where
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D> + Clone,
     L: ConstitutiveLaw<T, D> + Clone,
+    L::State: Record<T>,
     P: Phase<T, D> + Clone,
+    P::Particle: Record<T>,
 {
     fn step(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError> {
         self.step(T::lit(dt), &cast_forcing(forcing))
@@ -134,6 +151,14 @@ where
 
     fn into_critical_step(self: Box<Self>, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>> {
         Stepper::into_critical_step(*self, &cast_forcing(forcing)).map(cast_critical)
+    }
+
+    fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+        self.save(out)
+    }
+
+    fn restore(&mut self, from: &mut dyn Read) -> Result<(), RestoreError> {
+        self.restore(from)
     }
 
     fn particle_count(&self) -> usize {

@@ -26,7 +26,9 @@ pub(super) struct Spans<T, const D: usize> {
     pub(super) bounds: Vec<[u32; 2]>,
     pub(super) stale: bool,
     /// Whether particles have moved to other places since `bounds` were noted.
-    unknown: bool,
+    pub(super) unknown: bool,
+    /// Of how many shortest spans those of particles and of cells are to be made, where that is known beforehand.
+    pub(super) told: Option<[usize; 2]>,
     pub(super) scalars: Vec<T>,
     pub(super) vectors: Vec<SVector<T, D>>,
     pub(super) matrices: Vec<T>,
@@ -103,6 +105,7 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             bounds: vec![[0, 0]; spans],
             stale: true,
             unknown: true,
+            told: None,
             scalars: Vec::new(),
             vectors: Vec::new(),
             matrices: Vec::new(),
@@ -128,21 +131,22 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             self.bound(grid, bins);
         }
         let places = Places { basis, grid };
+        let [particles, cells] = self.told.take().unwrap_or([1, 1]);
         let bounds = self.bounds.iter().copied();
-        self.lengths[0] = PARTICLES * places.lay(&mut self.particles, self.bounds.len(), bounds);
+        self.lengths[0] = PARTICLES * places.lay(&mut self.particles, self.bounds.len(), bounds, particles);
         if fits {
             let bounds = bins
                 .occupied()
                 .chunks(CELLS)
                 .filter_map(|cells| Some([*cells.first()?, *cells.last()?]));
             let count = bins.occupied().len().div_ceil(CELLS);
-            self.lengths[1] = CELLS * places.lay(&mut self.cells, count, bounds);
+            self.lengths[1] = CELLS * places.lay(&mut self.cells, count, bounds, cells);
         }
     }
 
     /// Particles have moved to other places.
     pub(super) fn forget(&mut self) {
-        (self.stale, self.unknown) = (true, true);
+        (self.stale, self.unknown, self.told) = (true, true, None);
     }
 
     fn bound(&mut self, grid: &Grid<T, D>, bins: &Bins<D>) {
@@ -218,16 +222,16 @@ where
     B: BasisFamily<T, D>,
 {
     /// Lays the windows of spans end to end, given the bounds of `count` shortest ones. Where they overlap so much that they
-    /// would cost more than they bring, spans are made of two, four, ... of the shortest ones; returns of how many. A single
-    /// one is the whole.
+    /// would cost more than they bring, spans are made of two, four, ... of the shortest ones, `joined` at least; returns of
+    /// how many. A single one is the whole.
     fn lay(
         &self,
         spans: &mut Vec<SpanWindow>,
         count: usize,
         bounds: impl Iterator<Item = [u32; 2]> + Clone,
+        mut joined: usize,
     ) -> usize {
         let dofs = self.basis.dof_count(self.grid);
-        let mut joined = 1;
         while joined < count {
             if self.lay_joined(spans, joined, bounds.clone()) <= MOST_OVERLAP * dofs {
                 return joined;

@@ -52,7 +52,13 @@ where
     pub(super) fn follow_particles(&mut self) {
         self.strayed = false;
         self.grid = lay(self.grid.clone(), self.bins.cells());
+        self.follow_window();
+    }
+
+    /// Takes in that cells and DOFs have other numbers.
+    pub(super) fn follow_window(&mut self) {
         self.bins.note_numbering();
+        self.order.follow_window(&self.grid);
         self.spans.forget();
         self.allocate_dofs();
     }

@@ -7,6 +7,7 @@ use materialpoint::mass::VelocityMass;
 use materialpoint::particles::Particles;
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{self, Reconstruction, RelaxedTaylor, Taylor};
+use materialpoint::record::Record;
 use materialpoint::stepper::{Setup, Simulation, Stepper, SurfacePoint};
 use nalgebra::vector;
 
@@ -48,7 +49,7 @@ const fn face(side: Side) -> Face {
 
 /// Particles of one or more bodies on a grid from 0 to `length`.
 #[derive(Clone, Debug)]
-pub struct Bodies<L: ConstitutiveLaw<f64, 1>> {
+pub struct Bodies<L: ConstitutiveLaw<f64, 1, State: Record<f64>>> {
     pub law: L,
     pub length: f64,
     pub cells: usize,
@@ -56,7 +57,7 @@ pub struct Bodies<L: ConstitutiveLaw<f64, 1>> {
     pub surface: Vec<SurfacePoint<f64>>,
 }
 
-impl<L: ConstitutiveLaw<f64, 1> + Copy + 'static> Bodies<L> {
+impl<L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Copy + 'static> Bodies<L> {
     /// No body yet.
     pub fn on_grid(law: L, length: f64, cells: usize) -> Self {
         Self {

@@ -8,6 +8,7 @@ use materialpoint::method::{Method, MethodVisitor};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
 use materialpoint::reconstruction::Reconstruction;
+use materialpoint::record::Record;
 use materialpoint::reference::two_phase::{Soil, TwoPhaseReference, TwoPhaseState};
 use materialpoint::stepper::{
     FaceCondition, Forcing, PoreCondition, Setup, Simulation, Stepper, SurfacePoint,
@@ -36,7 +37,7 @@ pub struct Column<L> {
     pub surface: bool,
 }
 
-impl<L: ConstitutiveLaw<f64, 1> + Clone + 'static> Column<L> {
+impl<L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Clone + 'static> Column<L> {
     pub fn phase(&self) -> TwoPhase<f64> {
         TwoPhase {
             porosity: self.soil.porosity,
@@ -79,7 +80,7 @@ struct Build<'a, L, I> {
 
 impl<L, I> MethodVisitor<f64> for Build<'_, L, I>
 where
-    L: ConstitutiveLaw<f64, 1> + Clone + 'static,
+    L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Clone + 'static,
     I: Fn(f64) -> TwoPhaseState,
 {
     type Output = Box<dyn Simulation<1>>;

@@ -4,6 +4,6 @@ mod files;
 mod full_disk;
 mod maps;
 mod pictures;
-mod scratch;
+pub(crate) mod scratch;
 mod series;
 mod vtu;

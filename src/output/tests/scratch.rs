@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::output::Folder;
 
 /// A folder of this test alone, removed at its end.
-pub(super) struct Scratch(PathBuf);
+pub(crate) struct Scratch(PathBuf);
 
 impl Scratch {
     pub fn new(name: &str) -> Scratch {

@@ -20,10 +20,8 @@ pub(super) fn read(root: &Section<'_>) -> Result<OutputSpec, SceneError> {
     if let Some(item) = section.optional("every") {
         output.every = item.size(0, u64::MAX)?;
     }
-    if let Some(item) = section.optional("checkpoint_every")
-        && item.count(0, u64::MAX)? != 0
-    {
-        return Err(item.not_in_this_version("0"));
+    if let Some(item) = section.optional("checkpoint_every") {
+        output.checkpoint_every = item.size(0, u64::MAX)?;
     }
     Ok(output)
 }

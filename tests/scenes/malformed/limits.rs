@@ -14,7 +14,6 @@ pub(super) const NOT_IN_THIS_VERSION: &[Case] = &[
      &["method.reconstruction = \"spline\"", "exists in 1-D only", "2 axes"]),
     ("a cubic basis in two dimensions", Set("method.degree=3\ngrid={min=[0, 0], max=[1, 1], cells=[4, 5]}\nmaterial.law={linear-elastic={youngs_modulus=1, poissons_ratio=0}}\nbody=[{min=[0, 0], max=[1, 1], particles_per_cell=[2, 2]}]\nboundary=[]\nload={}"),
      &["method.degree = 3 is not possible in this version", "1 or 2 beyond one dimension"]),
-    ("checkpoints", Set("output.checkpoint_every=100"), &["output.checkpoint_every = 100 is not possible in this version", "expected 0"]),
 ];
 
 /// Edits of the compiled-in bar.

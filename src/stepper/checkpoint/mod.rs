@@ -1,0 +1,191 @@
+//! A stepper's state, saved and restored to the bit.
+//!
+//! Saved is what a step finds and does not make anew:
+//!
+//! * the particles, in the order in which they are in memory (sums depend on it), and which of them bear surfaces;
+//! * their cells: a particle at an edge stays in the cell that it came from, so that its position does not tell;
+//! * the window of cells that have numbers, and whether it is to be laid anew ([`super::window`]);
+//! * their first numbers, and how many have changed their cells since they were put in order;
+//! * how sums are cut into spans, which the cells of earlier steps decide ([`spans`]);
+//! * time, steps, diagnostics.
+//!
+//! Not saved is what follows from the [`Setup`](super::Setup) (grid, law, phase, DOFs of the faces) or is made anew before it is
+//! used: basis and reconstruction take in where the particles are at the start of a step, as the lists of the cells and the cuts
+//! of the surfaces; mass, forces, velocities, matrices and drag of the DOFs and the part of a cell that a wave crosses are summed
+//! from the particles. Body forces ([`Stepper::set_body_forces`]) are loads, which the caller sets again.
+
+mod codec;
+mod particles;
+mod spans;
+
+use std::io::{self, Read, Write};
+
+use super::{Conservation, Diagnostics, Stepper};
+use crate::basis::BasisFamily;
+use crate::error::RestoreError;
+use crate::grid::Window;
+use crate::law::ConstitutiveLaw;
+use crate::phase::Phase;
+use crate::reconstruction::Reconstruction;
+use crate::record::Record;
+use crate::scalar::Scalar;
+use codec::{In, Out};
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    L::State: Record<T>,
+    P: Phase<T, D>,
+    P::Particle: Record<T>,
+{
+    /// Writes all that [`Stepper::restore`] needs to go on as this stepper will, to the bit; nothing is held twice in memory.
+    /// The bytes bear no mark and no checksum of their own.
+    ///
+    /// # Errors
+    /// Those of `out`, and [`io::ErrorKind::Unsupported`] for scalars other than `f64` and `f32`.
+    pub fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut out = Out::new::<T>(out)?;
+        for (_, value) in self.shape() {
+            out.count(value)?;
+        }
+        self.save_window(&mut out)?;
+        out.numbers(&[self.time])?;
+        out.count(self.steps)?;
+        self.diagnostics.save(&mut out)?;
+        self.particles.save(&mut out)?;
+        for point in &self.surface {
+            out.count(point.particle)?;
+        }
+        out.indices(self.bins.cells().as_flattened())?;
+        self.order.save(&mut out)?;
+        self.spans.save(&mut out)
+    }
+
+    /// Takes over what [`Stepper::save`] wrote, of a stepper with the same setup. DOF velocities are those of the next step once
+    /// it is taken, and body forces must be set again.
+    ///
+    /// # Errors
+    /// If it cannot be read, comes from a stepper of another kind or makes no sense. The state is then neither the old nor the
+    /// new one: such a stepper is of no further use.
+    pub fn restore(&mut self, from: &mut dyn Read) -> Result<(), RestoreError> {
+        let mut from = In::new::<T>(from)?;
+        for (what, expected) in self.shape() {
+            from.expect(what, expected)?;
+        }
+        self.restore_window(&mut from)?;
+        from.numbers(std::slice::from_mut(&mut self.time))?;
+        self.steps = from.count()?;
+        self.diagnostics.restore(&mut from)?;
+        self.particles.restore(&mut from)?;
+        let count = self.particles.len();
+        for (index, point) in self.surface.iter_mut().enumerate() {
+            point.particle = from.count_below(count, "the particle of surface", index)?;
+        }
+        self.restore_cells(&mut from)?;
+        self.order.load(&mut from)?;
+        // Windows overlap, and a matrix has so many numbers for each DOF.
+        let width = 1 + self.basis.half_band(&self.grid);
+        let most = 16 * width * (self.dof_count() + self.particles.len());
+        self.spans.restore(&mut from, (&self.grid, &self.bins), most)
+    }
+
+    /// What two steppers must have in common, with names.
+    fn shape(&self) -> [(&'static str, usize); 5] {
+        [
+            ("axes", D),
+            ("bytes to a number", size_of::<T>()),
+            ("cells", self.grid.cells().iter().product()),
+            ("particles", self.particles.len()),
+            ("surfaces", self.surface.len()),
+        ]
+    }
+
+    fn save_window(&self, out: &mut Out<'_>) -> io::Result<()> {
+        let window = self.grid.window();
+        out.indices(&window.first())?;
+        for count in window.shape() {
+            out.count(count)?;
+        }
+        out.flag(self.strayed)
+    }
+
+    fn restore_window(&mut self, from: &mut In<'_>) -> Result<(), RestoreError> {
+        let (mut first, mut shape) = ([0; D], [0; D]);
+        from.indices(&mut first)?;
+        for count in &mut shape {
+            *count = from.count()?;
+        }
+        let strayed = from.flag()?;
+        let window = Window::new(first, shape);
+        let there = *self.grid.window();
+        if window != there {
+            self.grid = self.grid.clone().with_window(window);
+            let refused = !B::FOLLOWS_WINDOW || *self.grid.window() != window || shape.contains(&0);
+            if refused {
+                let what = "the window of cells, axis";
+                return Err(RestoreError::Invalid { what, index: 0 });
+            }
+            self.follow_window();
+        }
+        self.strayed = strayed;
+        Ok(())
+    }
+
+    fn restore_cells(&mut self, from: &mut In<'_>) -> Result<(), RestoreError> {
+        let (counts, strayed) = (self.grid.cells(), self.strayed);
+        for (index, cell) in self.bins.cells_mut().iter_mut().enumerate() {
+            from.indices(cell)?;
+            let outside = cell.iter().zip(counts).any(|(&c, count)| c as usize >= count);
+            if outside || !strayed && !self.grid.has_numbers(cell, 0) {
+                let what = "the cell of particle";
+                return Err(RestoreError::Invalid { what, index });
+            }
+        }
+        self.bins.note_crossings(1);
+        Ok(())
+    }
+}
+
+impl<T: Scalar> Diagnostics<T> {
+    fn save(&self, out: &mut Out<'_>) -> io::Result<()> {
+        let Self {
+            conservation,
+            liquid_conservation,
+            grid_crossings,
+            reduced_cells,
+            // Of the setup, as whether a liquid flows.
+            total_mass: _,
+        } = self;
+        for errors in [Some(conservation), liquid_conservation.as_ref()]
+            .into_iter()
+            .flatten()
+        {
+            out.numbers(&[errors.mass, errors.momentum, errors.momentum_scaled])?;
+        }
+        out.count(*grid_crossings)?;
+        out.count(*reduced_cells)
+    }
+
+    fn restore(&mut self, from: &mut In<'_>) -> Result<(), RestoreError> {
+        let both = [Some(&mut self.conservation), self.liquid_conservation.as_mut()];
+        for errors in both.into_iter().flatten() {
+            let mut found = [T::zero(); 3];
+            from.numbers(&mut found)?;
+            let [mass, momentum, momentum_scaled] = found;
+            *errors = Conservation {
+                mass,
+                momentum,
+                momentum_scaled,
+            };
+        }
+        self.grid_crossings = from.count()?;
+        self.reduced_cells = from.count()?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;
