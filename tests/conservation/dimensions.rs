@@ -114,3 +114,14 @@ fn the_fits_and_the_consistent_mass_agree_to_the_scheme_s_accuracy() {
         );
     }
 }
+
+/// Three and four functions in two and three dimensions, two on a line.
+#[test]
+fn linear_fits_agree_too() {
+    let lumped = VelocityMass::Lumped;
+    let line = bar::<1, _, _>(BSpline::<2>, Taylor::<f64, 1, 2>::new(), lumped).0;
+    let plane = bar::<2, _, _>(BSpline::<2>, Taylor::<f64, 2, 3>::new(), lumped);
+    assert_close(&line, plane, 1e-4);
+    let space = bar::<3, _, _>(BSpline::<2>, Taylor::<f64, 3, 4>::new(), lumped);
+    assert_close(&line, space, 1e-4);
+}
