@@ -1,8 +1,16 @@
 //! Scenes in two and three dimensions.
 
 mod body;
+mod cantilever;
+mod cook;
+mod discs;
 mod manufactured;
+mod patch;
+mod rotation;
+mod translation;
+mod vortex;
 mod walls;
+mod watch;
 
 use materialpoint::scene::Scene;
 
