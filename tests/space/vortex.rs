@@ -88,14 +88,30 @@ fn published_taylor_needs_material_around() {
         let error = error(&RING, basis, Taylor, 24).unwrap_err();
         assert!(matches!(error, RunError::Stopped { .. }), "{error}");
     }
-    check(&BLOCK, LINEAR, Taylor, &[(24, 4.30e-1), (48, 2.26e-1)]);
+    check(&BLOCK, LINEAR, Taylor, &[(24, 4.30e-1)]);
     check(&BLOCK, DUAL_DOMAIN, Taylor, &[(24, 5.12e-1)]);
-    check(&BLOCK, BSPLINE, Taylor, &[(24, 5.30e-1), (48, 1.28e-1)]);
+    check(&BLOCK, BSPLINE, Taylor, &[(24, 5.30e-1)]);
+}
+
+#[test]
+#[ignore = "60 s: cargo test --release fits_converge_within_a_block -- --ignored"]
+fn fits_converge_within_a_block() {
+    let kinds = [
+        (Taylor, [2.26e-1, 1.37e-1, 1.28e-1]),
+        (RelaxedTaylor, [2.09e-1, 1.17e-1, 8.27e-2]),
+    ];
+    for (kind, expected) in kinds {
+        for (basis, expected) in [LINEAR, DUAL_DOMAIN, BSPLINE].into_iter().zip(expected) {
+            check(&BLOCK, basis, kind, &[(48, expected)]);
+        }
+    }
 }
 
 #[test]
 fn a_ring_in_a_block_is_no_better_with_particle_sums() {
     check(&BLOCK, LINEAR, Shepard, &[(24, 7.71e-1), (48, 3.71e-1)]);
+    // So many particles, in spans, were once more than dual domain's windows held.
+    check(&BLOCK, DUAL_DOMAIN, Shepard, &[(48, 4.33e-1)]);
     check(&BLOCK, BSPLINE, Shepard, &[(24, 1.03), (48, 2.73e-1)]);
     check(&BLOCK, BSPLINE, RelaxedTaylor, &[(24, 2.15e-1)]);
 }
