@@ -173,7 +173,6 @@ fn a_linear_velocity_strains_every_particle_alike_with_relaxed_taylor() {
         }
         for method in with(Shepard).chain(with(Taylor)) {
             let found = departure_of_linear_strain(method, seed);
-            println!("{method}: {found}");
             assert!(found > 1e-3, "{method}: {found}");
         }
     }

@@ -89,7 +89,6 @@ fn particle_sums_lose_angular_momentum_at_more_than_second_order() {
     for (basis, expected) in LEFT {
         let spins = [12, 24].map(|cells| shepard(basis, cells));
         for (spin, expected) in spins.iter().zip(expected) {
-            println!("{basis:?} {spin:?}");
             let off = (1.0 - spin.angular) / (1.0 - expected);
             assert!((0.8..1.2).contains(&off), "{basis:?} {spin:?}");
             // Energy does not follow: what the rotation loses is found as vibration.
