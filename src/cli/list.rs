@@ -101,6 +101,10 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
                 "manufactured",
                 "2-D and 3-D: neo-Hookean waves in a box on rollers, exact at finite strain",
             ),
+            (
+                "vortex",
+                "2-D and 3-D: a neo-Hookean ring sheared and turned, exact at finite strain",
+            ),
         ],
     ),
 ];

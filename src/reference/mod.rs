@@ -16,6 +16,8 @@
 //! | [`SaturatedColumn`](two_phase::SaturatedColumn) | closed form | saturated column under its weight, at rest |
 //! | [`LagrangianSoil`](two_phase::LagrangianSoil) | converged numerically, with an estimate of its own error | saturated soil in motion, any elastic law |
 //! | [`Manufactured`] | closed form | waves in a box on rollers, finite strain, any dimension |
+//! | [`Elastica`] | converged numerically | slender cantilever bent far by a force at its tip, static |
+//! | [`Vortex`] | closed form | a ring sheared and turned at finite strain, two and three dimensions |
 //!
 //! Soil has its own state and trait, see [`two_phase`].
 //!
@@ -36,7 +38,7 @@ mod vibrating_bar;
 pub use entropy_bar::{EntropyBar, EntropyEstimate};
 pub use error::ReferenceError;
 pub use lagrangian_bar::{BarProblem, End, LagrangianBar, Resolution};
-pub use space::{FieldReference, FieldState, Manufactured};
+pub use space::{Elastica, FieldReference, FieldState, Manufactured, Ring, Swing, Vortex};
 pub use static_column::{StaticColumn, Strain};
 pub use uniaxial_law::{Hill, Hyperelastic, InvertibleLaw, Linear, Logarithmic, NeoHookean, UniaxialLaw};
 pub use vibrating_bar::VibratingBar;

@@ -56,7 +56,7 @@ where
             }
         }
         all.surface
-            .extend(surfaces(scene, body, &filling, all.particles.len()));
+            .extend(surfaces(scene, body, &filling, all.particles.len())?);
         append(&mut all.particles, filling.particles);
         move_to(&mut all.liquid, liquid);
     }

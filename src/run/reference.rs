@@ -7,7 +7,7 @@ use crate::law::Moduli;
 use crate::reference::two_phase::TwoPhaseReference;
 use crate::reference::{
     FieldReference, Hill, LagrangianBar, Linear, Logarithmic, Manufactured, NeoHookean, Reference,
-    ReferenceError, StaticColumn, Strain, VibratingBar,
+    ReferenceError, Ring, StaticColumn, Strain, Swing, VibratingBar, Vortex,
 };
 use crate::scene::{Against, Law, ReferenceSpec, Scene};
 
@@ -52,9 +52,6 @@ pub(super) fn solution(scene: &Scene) -> Result<Option<Solution>, RunError> {
 pub(super) fn field_reference<const D: usize>(
     scene: &Scene,
 ) -> Result<Option<Box<dyn FieldReference<D>>>, RunError> {
-    let Some(ReferenceSpec::Manufactured { amplitude }) = scene.reference else {
-        return Ok(None);
-    };
     let Law::NeoHookean {
         youngs_modulus,
         poissons_ratio,
@@ -64,8 +61,23 @@ pub(super) fn field_reference<const D: usize>(
     };
     let moduli = Moduli::from_young(youngs_modulus, poissons_ratio)?;
     let grid = super::dispatch::grid(scene)?;
-    let solution = Manufactured::new(&grid, moduli, scene.material.solid_density(), amplitude)?;
-    Ok(Some(Box::new(solution)))
+    let density = scene.material.solid_density();
+    Ok(match scene.reference {
+        Some(ReferenceSpec::Manufactured { amplitude }) => {
+            Some(Box::new(Manufactured::new(&grid, moduli, density, amplitude)?))
+        }
+        Some(ReferenceSpec::Vortex {
+            inner,
+            outer,
+            angle,
+            time,
+        }) => {
+            let centre = (grid.min() + grid.max()) / 2.0;
+            let (ring, swing) = (Ring { inner, outer }, Swing { angle, time });
+            Some(Box::new(Vortex::new(centre, ring, moduli, density, swing)?))
+        }
+        _ => None,
+    })
 }
 
 struct Problem {

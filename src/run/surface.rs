@@ -2,25 +2,29 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::SVector;
+
+use super::error::RunError;
 use super::initial::Filling;
 use crate::grid::{Face, Side};
 use crate::scene::{Body, Boundary, BoundaryKind, Scene};
 use crate::stepper::SurfacePoint;
 
 /// The surfaces of `body`, whose particles are those of `filling` and are numbered from `first` on: in one phase those that bear a
-/// traction; in two every end at which a load, a pressure outside or the solid's skin acts on the liquid, that is, all but
+/// traction, where its boundary says so; in two every end at which a load, a pressure outside or the solid's skin acts on the liquid, that is, all but
 /// the held and sealed ones. Beyond one dimension each row of the lattice that ends there has a point.
 pub(super) fn surfaces<const D: usize>(
     scene: &Scene,
     body: &Body,
     filling: &Filling<D>,
     first: usize,
-) -> Vec<SurfacePoint<f64>> {
+) -> Result<Vec<SurfacePoint<f64>>, RunError> {
     let mut points = Vec::new();
     for face in Face::all::<D>().filter(|&face| is_needed(scene, body, face)) {
         let area = filling.lattice.volume() / filling.lattice.spacing()[face.axis];
         for particle in ends(filling, face) {
-            if !touches_another(scene, body, filling, particle, face) {
+            let acts = acts_at(scene, face, &filling.particles.position[particle])?;
+            if acts && !touches_another(scene, body, filling, particle, face) {
                 points.push(SurfacePoint {
                     particle: first + particle,
                     face,
@@ -30,7 +34,16 @@ pub(super) fn surfaces<const D: usize>(
             }
         }
     }
-    points
+    Ok(points)
+}
+
+/// Whether the boundary at `face` says that it acts at `x` (m).
+fn acts_at<const D: usize>(scene: &Scene, face: Face, x: &SVector<f64, D>) -> Result<bool, RunError> {
+    let mut there = scene.boundaries.iter().filter(|boundary| boundary.face == face);
+    match there.find_map(|boundary| boundary.inside.as_ref()) {
+        Some(inside) => Ok(inside.eval_at(x.as_slice())? > 0.0),
+        None => Ok(true),
+    }
 }
 
 fn is_needed(scene: &Scene, body: &Body, face: Face) -> bool {
@@ -173,6 +186,17 @@ mod tests {
         assert_eq!(ends(&[ONE_PHASE]), []);
         let loaded = "boundary=[{face='x-max', traction=['1']}]";
         assert_eq!(ends(&[ONE_PHASE, loaded]), [("x-max".to_owned(), 7)]);
+    }
+
+    #[test]
+    fn a_traction_acts_where_it_is_said_to() {
+        let two = "body=[{min=[0], max=[0.5], particles_per_cell=[2]}, {min=[1], max=[1.5], particles_per_cell=[2]}]";
+        let loaded = |inside: &str| format!("boundary=[{{face='x-max', traction=['1']{inside}}}]");
+        let all = ends(&[ONE_PHASE, two, &loaded("")]);
+        assert_eq!(all, [("x-max".to_owned(), 3), ("x-max".to_owned(), 7)]);
+        let right = ends(&[ONE_PHASE, two, &loaded(", inside='x - 1'")]);
+        assert_eq!(right, [("x-max".to_owned(), 7)]);
+        assert_eq!(ends(&[ONE_PHASE, two, &loaded(", inside='-x'")]), []);
     }
 
     #[test]

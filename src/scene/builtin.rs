@@ -1,7 +1,7 @@
 //! Scenes that are compiled in.
 
 /// Names and texts; the first is the default.
-const SCENES: [(&str, &str); 14] = [
+const SCENES: [(&str, &str); 19] = [
     (
         "vibrating-bar-large",
         include_str!("../../examples/scenes/vibrating-bar-large.toml"),
@@ -45,6 +45,23 @@ const SCENES: [(&str, &str); 14] = [
     (
         "manufactured",
         include_str!("../../examples/scenes/manufactured.toml"),
+    ),
+    ("vortex", include_str!("../../examples/scenes/vortex.toml")),
+    (
+        "spinning-disc",
+        include_str!("../../examples/scenes/spinning-disc.toml"),
+    ),
+    (
+        "colliding-discs",
+        include_str!("../../examples/scenes/colliding-discs.toml"),
+    ),
+    (
+        "cantilever",
+        include_str!("../../examples/scenes/cantilever.toml"),
+    ),
+    (
+        "cooks-membrane",
+        include_str!("../../examples/scenes/cooks-membrane.toml"),
     ),
     (
         "granular-column",

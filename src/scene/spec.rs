@@ -335,6 +335,8 @@ pub struct Boundary {
     pub face: Face,
     /// What holds.
     pub kind: BoundaryKind,
+    /// Where a traction acts: on particles of the surface at which this is positive at the start, in `x`, `y`, `z`. Without it on all.
+    pub inside: Option<Expression>,
     /// What the liquid meets.
     pub pores: PoreBoundary,
 }
@@ -410,6 +412,18 @@ pub enum ReferenceSpec {
         /// Largest displacement (m), not 0.
         amplitude: f64,
     },
+    /// `vortex`, two and three dimensions: a neo-Hookean ring about the middle of the grid, whose circles turn and come back, driven
+    /// by a body force; the body may be larger than the ring. The initial state of the body is the reference's.
+    Vortex {
+        /// Inner radius (m), positive.
+        inner: f64,
+        /// Outer radius (m), above the inner one.
+        outer: f64,
+        /// Largest angle (rad), not 0.
+        angle: f64,
+        /// Time (s) after which the ring is back, positive.
+        time: f64,
+    },
 }
 
 impl ReferenceSpec {
@@ -423,13 +437,17 @@ impl ReferenceSpec {
             Self::StandingWave { .. } => "standing-wave",
             Self::SelfWeight => "self-weight",
             Self::Manufactured { .. } => "manufactured",
+            Self::Vortex { .. } => "vortex",
         }
     }
 
     /// How many phases it is about.
     pub fn phases(&self) -> usize {
         match self {
-            Self::VibratingBar { .. } | Self::ColumnCompaction { .. } | Self::Manufactured { .. } => 1,
+            Self::VibratingBar { .. }
+            | Self::ColumnCompaction { .. }
+            | Self::Manufactured { .. }
+            | Self::Vortex { .. } => 1,
             Self::Consolidation { .. }
             | Self::XieLeo { .. }
             | Self::StandingWave { .. }
@@ -445,13 +463,14 @@ impl ReferenceSpec {
                 | Self::XieLeo { .. }
                 | Self::StandingWave { .. }
                 | Self::Manufactured { .. }
+                | Self::Vortex { .. }
         )
     }
 
     /// Whether it is one of so many axes.
     pub fn knows_dimension(&self, axes: usize) -> bool {
         match self {
-            Self::Manufactured { .. } => axes > 1,
+            Self::Manufactured { .. } | Self::Vortex { .. } => axes > 1,
             _ => axes == 1,
         }
     }

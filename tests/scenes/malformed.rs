@@ -184,6 +184,7 @@ fn a_scene_that_is_not_its_reference() {
 #[test]
 fn scenes_in_the_plane() {
     check(builtin("manufactured"), space::WAVES);
+    check(builtin("vortex"), space::VORTEX);
     check(builtin("granular-column"), space::SAND);
 }
 

@@ -1,10 +1,18 @@
 //! Scenes in two and three dimensions.
 
 mod body;
+mod cantilever;
+mod cook;
+mod discs;
 mod manufactured;
+mod patch;
+mod rotation;
 mod saturated;
 mod slope;
+mod translation;
+mod vortex;
 mod walls;
+mod watch;
 mod window;
 
 use materialpoint::scene::Scene;

@@ -1,8 +1,12 @@
 //! Solutions in two and three dimensions.
 
+mod elastica;
 mod manufactured;
+mod vortex;
 
+pub use elastica::Elastica;
 pub use manufactured::Manufactured;
+pub use vortex::{Ring, Swing, Vortex};
 
 use nalgebra::{SMatrix, SVector};
 

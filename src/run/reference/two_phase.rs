@@ -47,7 +47,8 @@ pub(super) fn solution(scene: &Scene, reference: ReferenceSpec, origin: f64, hei
         }
         ReferenceSpec::VibratingBar { .. }
         | ReferenceSpec::ColumnCompaction { .. }
-        | ReferenceSpec::Manufactured { .. } => None,
+        | ReferenceSpec::Manufactured { .. }
+        | ReferenceSpec::Vortex { .. } => None,
     })
 }
 

@@ -40,6 +40,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
         }
         Some(ReferenceSpec::SelfWeight) => two_phase::self_weight(scene),
         Some(ReferenceSpec::Manufactured { amplitude }) => space::manufactured(scene, amplitude),
+        Some(ReferenceSpec::Vortex { inner, outer, .. }) => space::vortex(scene, inner, outer),
     }
 }
 

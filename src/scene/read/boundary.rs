@@ -3,16 +3,18 @@
 use super::material::PhaseCount;
 use super::{Item, Section, check_over_time};
 use crate::grid::{Face, Side};
+use crate::scene::expression::coordinates;
 use crate::scene::text::one_of;
 use crate::scene::{Boundary, BoundaryKind, Expression, GridSpec, PoreBoundary, SceneError};
 
-const KEYS: [&str; 8] = [
+const KEYS: [&str; 9] = [
     "face",
     "fixed",
     "roller",
     "friction",
     "velocity",
     "traction",
+    "inside",
     "drained",
     "pore_pressure",
 ];
@@ -40,9 +42,11 @@ pub(super) fn read(
             return Err(face.0.conflict(&problem));
         }
         let pores = pores(&section, end)?;
+        let kind = kind(&entry, &section, grid.cells.len(), end, phases)?;
         boundaries.push(Boundary {
             face: face.1,
-            kind: kind(&entry, &section, grid.cells.len(), end, phases)?,
+            inside: inside(&section, &kind, grid, phases)?,
+            kind,
             pores,
         });
     }
@@ -99,6 +103,22 @@ fn kind(
         "velocity" => Ok(BoundaryKind::Velocity(in_time(&item, dimension, end)?)),
         _ => Ok(BoundaryKind::Traction(in_time(&item, dimension, end)?)),
     }
+}
+
+/// Where a traction acts.
+fn inside(
+    section: &Section<'_>,
+    kind: &BoundaryKind,
+    grid: &GridSpec,
+    phases: PhaseCount,
+) -> Result<Option<Expression>, SceneError> {
+    let Some(item) = section.optional("inside") else {
+        return Ok(None);
+    };
+    if !matches!(kind, BoundaryKind::Traction(_)) || phases == PhaseCount::Two {
+        return Err(item.conflict("it says where a traction acts, in one phase; expected traction beside it"));
+    }
+    item.expression(coordinates(grid.cells.len())).map(Some)
 }
 
 /// What the liquid meets; without a word it does not pass.

@@ -5,7 +5,7 @@ use crate::scene::{Against, ReferenceSpec, SceneError};
 
 type Read = fn(&Item<'_>) -> Result<ReferenceSpec, SceneError>;
 
-const REFERENCES: [(&str, Read); 7] = [
+const REFERENCES: [(&str, Read); 8] = [
     ("vibrating-bar", vibrating_bar),
     ("column-compaction", column_compaction),
     ("consolidation", consolidation),
@@ -13,6 +13,7 @@ const REFERENCES: [(&str, Read); 7] = [
     ("standing-wave", standing_wave),
     ("self-weight", self_weight),
     ("manufactured", manufactured),
+    ("vortex", vortex),
 ];
 
 /// Most half waves of a standing wave.
@@ -106,6 +107,25 @@ fn manufactured(item: &Item<'_>) -> Result<ReferenceSpec, SceneError> {
     let section = section.allow(&["amplitude"], &[])?;
     Ok(ReferenceSpec::Manufactured {
         amplitude: not_zero(&section, "amplitude", "a number other than 0 (m)")?,
+    })
+}
+
+fn vortex(item: &Item<'_>) -> Result<ReferenceSpec, SceneError> {
+    let section = item.section("a table, such as { inner = 0.75, outer = 1.25, angle = 0.2, time = 1.0 }")?;
+    let section = section.allow(&["inner", "outer", "angle", "time"], &[])?;
+    let inner_words = "the inner radius, a positive number (m)";
+    let inner = section.required("inner", inner_words)?.positive("m")?;
+    let outer_words = format!("a radius above the inner one, {inner:?} m");
+    let outer = section.required("outer", &outer_words)?;
+    let time = section.required(
+        "time",
+        "the time after which the ring is back, a positive number (s)",
+    )?;
+    Ok(ReferenceSpec::Vortex {
+        inner,
+        outer: outer.number_where(&outer_words, |outer| outer > inner)?,
+        angle: not_zero(&section, "angle", "a number other than 0 (rad)")?,
+        time: time.positive("s")?,
     })
 }
 

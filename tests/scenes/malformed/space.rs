@@ -15,6 +15,23 @@ pub(super) const WAVES: &[Case] = &[
     ("a reference of a line", Set("reference={vibrating-bar={velocity=1}}"), &["grid.cells = [16, 16]", "reference.vibrating-bar", "another number of dimensions"]),
 ];
 
+/// Edits of the compiled-in vortex.
+#[rustfmt::skip]
+pub(super) const VORTEX: &[Case] = &[
+    ("another law", Set("material.law={linear-elastic={youngs_modulus=1, poissons_ratio=0.2}}"), &["reference.vortex = { inner = 0.75, outer = 1.25, ... }", "neo-hookean"]),
+    ("a wall that pulls", Set("boundary=[{face=\"x-min\", traction=[\"1\", \"0\"]}]"), &["reference.vortex", "fixed or roller at x-min"]),
+    ("a thinner ring", Set("body.0.inside=\"1.2 - sqrt(x^2 + y^2)\""), &["reference.vortex", "holds the ring", "there is none"]),
+    ("a ring beside the middle", Set("grid.max=[2.5, 1.5]"), &["reference.vortex", "about the middle of the grid"]),
+    ("a box that cuts the ring", Set("body.0.max=[1.0, 1.25]"), &["reference.vortex", "there is none"]),
+    ("a velocity", Set("body.0.velocity=[\"0\", \"0\"]"), &["reference.vortex", "gives initial state"]),
+    ("no turn", Set("reference.vortex.angle=0"), &["reference.vortex.angle = 0", "other than 0"]),
+    ("radii that cross", Set("reference.vortex.outer=0.5"), &["reference.vortex.outer = 0.5", "above the inner one, 0.75 m"]),
+    ("no time", Set("reference.vortex.time=0"), &["reference.vortex.time = 0", "positive"]),
+    ("no radius", Replace("inner = 0.75, ", ""), &["reference.vortex.inner is missing", "inner radius"]),
+    ("a place without a traction", Set("boundary=[{face=\"x-min\", roller=true, inside=\"x\"}]"), &["boundary.0.inside", "expected traction beside it"]),
+    ("a place in time", Set("boundary=[{face=\"x-min\", traction=[\"0\", \"0\"], inside=\"t\"}]"), &["boundary.0.inside", "x, y"]),
+];
+
 /// Edits of the compiled-in column of sand.
 #[rustfmt::skip]
 pub(super) const SAND: &[Case] = &[
