@@ -94,12 +94,12 @@ impl Journey<'_> {
     fn due(&self, done: usize) -> Due {
         let output = &self.scene.output;
         let steps = self.schedule.steps;
-        let every = |period: usize| period > 0 && done % period == 0;
+        let every = |period: usize| period > 0 && done.is_multiple_of(period);
         let frame = every(output.every) && done < steps;
         let sample_every = steps.div_ceil(self.samples.max(1)).max(1);
         Due {
             frame,
-            sample: done % sample_every == 0 || done == steps || frame,
+            sample: done.is_multiple_of(sample_every) || done == steps || frame,
             // It samples no energy: a run with checkpoints reports what one without them does.
             checkpoint: every(output.checkpoint_every),
         }
