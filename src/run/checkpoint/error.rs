@@ -47,11 +47,11 @@ pub enum CheckpointError {
         /// The file asked for.
         path: PathBuf,
         /// First key that differs.
-        key: String,
+        key: Box<str>,
         /// Its value when the checkpoint was written.
-        there: String,
+        there: Box<str>,
         /// Its value now.
-        here: String,
+        here: Box<str>,
     },
     /// Written by a run that took other steps.
     #[error("the checkpoint `{}` is of a run of {there} s a step, and time.step = \"auto\" finds {here} s now; resume with the program and on the kind of machine that wrote it, or give the step as a number", path.display())]

@@ -170,6 +170,17 @@ mod tests {
         }
     }
 
+    /// A process that resumes has its functions elsewhere.
+    #[test]
+    fn no_address_is_part_of_the_identity() {
+        let set = ["body.0.velocity=[\"-max(sin(x), x^2) + 1\"]"];
+        let text = identity(&scene(BAR, &set));
+        assert!(
+            text.contains("\"sin\"") && text.contains("\"max\"") && !text.contains("0x"),
+            "{text}"
+        );
+    }
+
     #[test]
     fn an_expression_is_named_as_it_was_written() {
         let found = found(&["body.0.velocity=[\"2*1\"]"]).unwrap();

@@ -74,9 +74,9 @@ impl Checkpoint {
         if let Some(Difference { key, there, here }) = difference(&there, &identity(scene)) {
             return Err(CheckpointError::OtherScene {
                 path: path.into(),
-                key,
-                there,
-                here,
+                key: key.into(),
+                there: there.into(),
+                here: here.into(),
             });
         }
         let past = take_schedule(&mut content).map_err(read)?;

@@ -59,8 +59,13 @@ fn max(a: f64, b: f64) -> f64 {
 }
 
 /// The entry of that name.
-pub(super) fn find<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
-    table.iter().find(|entry| entry.0 == name).map(|entry| entry.1)
+pub(super) fn entry<T: Copy>(table: &[(&'static str, T)], name: &str) -> Option<(&'static str, T)> {
+    table.iter().find(|entry| entry.0 == name).copied()
+}
+
+/// What belongs to that name.
+pub(super) fn find<T: Copy>(table: &[(&'static str, T)], name: &str) -> Option<T> {
+    entry(table, name).map(|entry| entry.1)
 }
 
 /// Names of all functions.

@@ -97,8 +97,8 @@ impl Expression {
             let result = match *operation {
                 Operation::Number(number) => number,
                 Operation::Variable(index) => values.get(index).copied().unwrap_or(f64::NAN),
-                Operation::Unary(function) => function(pop(&mut stack)),
-                Operation::Binary(function) => {
+                Operation::Unary(_, function) => function(pop(&mut stack)),
+                Operation::Binary(_, function) => {
                     let right = pop(&mut stack);
                     function(pop(&mut stack), right)
                 }

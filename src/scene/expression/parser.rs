@@ -10,8 +10,10 @@
 //! A sign binds less than a power and powers group from the right, as in mathematics. (The crate exmex reads
 //! `-x^2` as `(-x)^2` and `2^3^2` as `(2^3)^2`, and knows no `1e-3`: a scene would silently mean another load.)
 
+use std::fmt;
+
 use super::error::ExpressionProblem as Problem;
-use super::functions::{BINARY, Binary, CONSTANTS, UNARY, Unary, find, names};
+use super::functions::{BINARY, Binary, CONSTANTS, UNARY, Unary, entry, find, names};
 use crate::scene::text::shorten;
 
 /// Longest expression, in bytes.
@@ -20,13 +22,26 @@ const LONGEST: usize = 2000;
 const DEEPEST: usize = 100;
 
 /// One operation; it takes its operands from a stack and leaves its result there.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(super) enum Operation {
     Number(f64),
     /// Index into the variables.
     Variable(usize),
-    Unary(Unary),
-    Binary(Binary),
+    /// With the name of the function.
+    Unary(&'static str, Unary),
+    Binary(&'static str, Binary),
+}
+
+/// By name: the address of a function differs from process to process, and this text tells whether two scenes are alike.
+impl fmt::Debug for Operation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => f.debug_tuple("Number").field(number).finish(),
+            Self::Variable(index) => f.debug_tuple("Variable").field(index).finish(),
+            Self::Unary(name, _) => f.debug_tuple("Unary").field(name).finish(),
+            Self::Binary(name, _) => f.debug_tuple("Binary").field(name).finish(),
+        }
+    }
 }
 
 /// Translates `text`.
@@ -64,28 +79,28 @@ impl<'a> Parser<'a> {
     fn sum(&mut self) -> Result<(), Problem> {
         self.product()?;
         loop {
-            let operation: Binary = match self.peek() {
-                Some('+') => |a, b| a + b,
-                Some('-') => |a, b| a - b,
+            let operation = match self.peek() {
+                Some('+') => Operation::Binary("+", |a, b| a + b),
+                Some('-') => Operation::Binary("-", |a, b| a - b),
                 _ => return Ok(()),
             };
             self.position += 1;
             self.product()?;
-            self.program.push(Operation::Binary(operation));
+            self.program.push(operation);
         }
     }
 
     fn product(&mut self) -> Result<(), Problem> {
         self.signed()?;
         loop {
-            let operation: Binary = match self.peek() {
-                Some('*') => |a, b| a * b,
-                Some('/') => |a, b| a / b,
+            let operation = match self.peek() {
+                Some('*') => Operation::Binary("*", |a, b| a * b),
+                Some('/') => Operation::Binary("/", |a, b| a / b),
                 _ => return Ok(()),
             };
             self.position += 1;
             self.signed()?;
-            self.program.push(Operation::Binary(operation));
+            self.program.push(operation);
         }
     }
 
@@ -101,7 +116,7 @@ impl<'a> Parser<'a> {
             Some('-') => {
                 self.position += 1;
                 self.signed()?;
-                self.program.push(Operation::Unary(|a| -a));
+                self.program.push(Operation::Unary("-", |a| -a));
             }
             Some('+') => {
                 self.position += 1;
@@ -118,7 +133,7 @@ impl<'a> Parser<'a> {
         if self.peek() == Some('^') {
             self.position += 1;
             self.signed()?;
-            self.program.push(Operation::Binary(f64::powf));
+            self.program.push(Operation::Binary("^", f64::powf));
         }
         Ok(())
     }
@@ -187,14 +202,14 @@ impl<'a> Parser<'a> {
 
     fn call(&mut self, name: &str) -> Result<(), Problem> {
         self.position += 1;
-        let operation = if let Some(function) = find(&UNARY, name) {
+        let operation = if let Some((name, function)) = entry(&UNARY, name) {
             self.sum()?;
-            Operation::Unary(function)
-        } else if let Some(function) = find(&BINARY, name) {
+            Operation::Unary(name, function)
+        } else if let Some((name, function)) = entry(&BINARY, name) {
             self.sum()?;
             self.expect(',', "',' and a second argument")?;
             self.sum()?;
-            Operation::Binary(function)
+            Operation::Binary(name, function)
         } else if self.variables.contains(&name) || find(&CONSTANTS, name).is_some() {
             self.position -= 1;
             return Err(self.unexpected("an operator (+ - * / ^) or the end"));
