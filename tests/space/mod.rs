@@ -2,6 +2,7 @@
 
 mod body;
 mod cantilever;
+mod collapse;
 mod cook;
 mod discs;
 mod manufactured;
