@@ -157,7 +157,7 @@ mod tests {
     fn the_first_key_that_differs_is_named_with_both_values() {
         let cases = [
             ("grid.cells=[8]", "grid.cells", "4", "8"),
-            ("time.step=0.05", "time.step", "Fixed", "Fixed"),
+            ("time.step=0.05", "time.step", "0.1", "0.05"),
             ("method.basis=dual-domain", "method.basis", "Linear", "DualDomain"),
             ("method.scalar=f32", "method.scalar", "F64", "F32"),
             ("material.density=2", "material.phases.density", "1.0", "2.0"),

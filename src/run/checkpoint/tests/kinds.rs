@@ -35,9 +35,11 @@ const BLOCK: &str = r#"
     particles = "none"
 "#;
 
-const IN_SPACE: [&str; 2] = [
+/// Published TLS loses its free sides a little later.
+const IN_SPACE: [&str; 3] = [
+    "time={step=0.02, end=0.32}",
     "grid={min=[0, 0, 0], max=[6, 6, 5], cells=[6, 6, 5]}",
-    "body=[{min=[1, 0, 1], max=[4, 2, 3], particles_per_cell=[2, 2, 2], velocity=['1.5', '0.1*y*sin(x)', '0.3*y']}]",
+    "body=[{min=[1, 0, 1], max=[4, 2, 3], particles_per_cell=[2, 2, 2], velocity=['1.5', '0.02*y', '0.05*y']}]",
 ];
 
 const LAWS: [&str; 8] = [
@@ -51,14 +53,15 @@ const LAWS: [&str; 8] = [
     "material.law={newtonian-fluid={bulk_modulus=30, gamma=7, viscosity=0.01}}",
 ];
 
-/// A bar that flies through two cells; set on the smaller one.
-const FLIGHT: [&str; 3] = [
+/// A bar between walls in whose middle particles fly through two cells; set on the smaller one.
+const SWING: [&str; 4] = [
     "grid={min=[0], max=[6], cells=[24]}",
-    "body=[{min=[1.1], max=[4], particles_per_cell=[4], velocity=['1 + 0.2*sin(x)']}]",
+    "body=[{min=[0], max=[6], particles_per_cell=[4], velocity=['sin(pi*x/6)']}]",
+    "boundary=[{face='x-min', fixed=true}, {face='x-max', fixed=true}]",
     "time={step=0.02, end=0.48}",
 ];
 
-/// Interrupts the run after 13 steps of 24.
+/// Interrupts the run after 13 steps of 24, in space of 16.
 fn check<const D: usize>(name: &str, text: &str, method: Method, set: &[&str])
 where
     Scene: InSpace<D>,
@@ -99,7 +102,7 @@ fn every_method_law_and_scalar_of_the_line_is_resumed() {
         for (law, scalar) in laws.into_iter().flat_map(|law| [(law, "f64"), (law, "f32")]) {
             let law = format!("material.law={{{law}={{youngs_modulus=4}}}}");
             let scalar = format!("method.scalar={scalar}");
-            let set = [&FLIGHT[..], &[&law, &scalar]].concat();
+            let set = [&SWING[..], &[&law, &scalar]].concat();
             check::<1>("resume-line", BAR, method, &set);
         }
     }
