@@ -28,7 +28,7 @@ fn points() -> Vec<(SVector<f64, 2>, f64)> {
         let (x, y) = ((k % row) as f64 / 2.0 + 0.25, k / row);
         let row = y / 2;
         // At the floor and the ceiling on the side that is away from them.
-        let below = row == 0 || row + 1 < CELLS[1] && k / NEXT_TO_EDGE % 2 == 0;
+        let below = row == 0 || row + 1 < CELLS[1] && (k / NEXT_TO_EDGE).is_multiple_of(2);
         let within = match (k % NEXT_TO_EDGE, below) {
             (0, true) => 0.99,
             (0, false) => 0.01,
