@@ -54,6 +54,7 @@ impl<T: Scalar, const D: usize> Lattice<T, D> {
     }
 
     /// Distance of neighbours along each axis (m).
+    #[cfg(any(feature = "scene", test))]
     pub(crate) fn spacing(&self) -> SVector<T, D> {
         SVector::from_fn(|a, _| self.extent[a] / T::count(self.counts[a]))
     }
