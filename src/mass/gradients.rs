@@ -187,8 +187,8 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
                 T::zero()
             };
         }
-        // Three quarters of the digits: far below what a step's own errors are.
-        let tolerance = T::default_epsilon() / T::default_epsilon().sqrt().sqrt();
+        // Five sixths of the digits: far below what a step's own errors are.
+        let tolerance = T::default_epsilon().powf(T::lit(5.0) / T::lit(6.0));
         scale * tolerance * tolerance
     }
 

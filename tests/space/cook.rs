@@ -70,12 +70,15 @@ fn the_error_of_the_rise_halves_with_the_cells() {
     check(52, [1.005, 1.007, 1.005]);
 }
 
-/// No particle crosses a cell here: it is the slanted sides.
+/// No particle crosses a cell here: it is the slanted sides. Published TLS with dual domain lasts longer than this.
 #[test]
 fn fits_do_not_bear_slanted_free_sides() {
     let scene = scene(Scene::builtin("cooks-membrane").unwrap(), &["time.end=100"]);
     for kind in [ReconstructionKind::Taylor, ReconstructionKind::RelaxedTaylor] {
         for basis in BASES {
+            if (basis, kind) == (Basis::DualDomain, ReconstructionKind::Taylor) {
+                continue;
+            }
             let scene = scene.clone().with_method(Method::new(basis, kind));
             let error = watch::<2>(&scene, |_, _| {}).err();
             assert!(error.is_some(), "{basis:?} {kind:?}");

@@ -114,10 +114,7 @@ fn the_loss_is_not_the_time_step_s() {
 fn fits_do_not_bear_a_round_free_side() {
     for basis in BASES {
         let published = spin(Method::new(basis, ReconstructionKind::Taylor), 12, &[]);
-        assert!(
-            matches!(published.ended, Err(StepError::Invalid { .. })),
-            "{published:?}"
-        );
+        assert!(published.ended.is_err(), "{published:?}");
         let relaxed = spin(
             Method::new(basis, ReconstructionKind::RelaxedTaylor),
             12,

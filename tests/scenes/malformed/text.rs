@@ -17,7 +17,7 @@ pub(super) const KEYS: &[Case] = &[
     ("an unknown table", Replace("[load]", "[loads]"), &["loads is not a key", "title, grid", "load, reference"]),
     ("an unknown key", Replace("step =", "dt ="), &["time.dt is not a key", "step, safety, end"]),
     ("an unknown key of a body", Set("body.1.ppc=[4]"), &["body.1.ppc is not a key", "particles_per_cell"]),
-    ("an unknown key of a boundary", Set("boundary.0.free=true"), &["boundary.0.free", "face, fixed, roller, friction, velocity, traction, drained, pore_pressure"]),
+    ("an unknown key of a boundary", Set("boundary.0.free=true"), &["boundary.0.free", "face, fixed, roller, friction, velocity, traction, inside, drained, pore_pressure"]),
     ("an unknown constant", Set("material.law.linear-elastic.mu=1"), &["law.linear-elastic.mu", "youngs_modulus"]),
     ("a key of an unprintable name", Set("grid.\"\\n\"=1"), &["not a key", "min, max, cells"]),
     ("no title", Replace("title = \"Good\"", ""), &["title is missing", "in words"]),
