@@ -5,7 +5,8 @@ use crate::method::Method;
 use crate::run::InSpace;
 use crate::scene::Scene;
 
-/// A block that swirls through cells and slides over a rough floor; what changes with the dimension is set.
+/// A block that swirls through cells and slides over a rough floor, and ends before published TLS loses its free sides; what
+/// changes with the dimension is set.
 const BLOCK: &str = r#"
     title = "Block"
     [grid]
@@ -14,7 +15,7 @@ const BLOCK: &str = r#"
     cells = [6, 6]
     [time]
     step = 0.02
-    end = 0.48
+    end = 0.3
     [method]
     basis = "linear"
     reconstruction = "shepard"
@@ -35,7 +36,6 @@ const BLOCK: &str = r#"
     particles = "none"
 "#;
 
-/// Published TLS loses its free sides a little later.
 const IN_SPACE: [&str; 3] = [
     "time={step=0.02, end=0.32}",
     "grid={min=[0, 0, 0], max=[6, 6, 5], cells=[6, 6, 5]}",
@@ -61,7 +61,7 @@ const SWING: [&str; 4] = [
     "time={step=0.02, end=0.48}",
 ];
 
-/// Interrupts the run after 13 steps of 24, in space of 16.
+/// Interrupts the run after 13 steps of 24, in the plane of 15, in space of 16.
 fn check<const D: usize>(name: &str, text: &str, method: Method, set: &[&str])
 where
     Scene: InSpace<D>,
