@@ -140,12 +140,13 @@ impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
     fn dof_window(&self, grid: &Grid<T, D>, first: &Cell<D>, last: &Cell<D>) -> Range<usize> {
         // A cell at an end sees less beyond its nodes than others, so the numbers of its DOFs do not grow with its own. That of
         // its lowest node does, and gradients reach at most one node below and two above it along each axis.
+        let (lowest, shape) = (grid.window().first(), grid.window().shape());
         let (mut first_node, mut last_node, mut step, mut stride) = (0, 0, 0, 1);
         for axis in 0..D {
-            first_node += first[axis] as usize * stride;
-            last_node += last[axis] as usize * stride;
+            first_node += (first[axis] - lowest[axis]) as usize * stride;
+            last_node += (last[axis] - lowest[axis]) as usize * stride;
             step += stride;
-            stride *= grid.cells()[axis] + 1;
+            stride *= shape[axis] + 1;
         }
         first_node.saturating_sub(step)..(last_node + 2 * step + 1).min(stride)
     }
@@ -184,6 +185,7 @@ impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid::Window;
     use nalgebra::vector;
 
     /// A linear field whose nodes beyond the surface have not moved: its slope at every particle is still its slope.
@@ -201,6 +203,27 @@ mod tests {
                 slope += field[i] * gradient[0];
             });
             assert!((slope - 1.0_f64).abs() < 1e-14, "{x}: {slope}");
+        }
+    }
+
+    /// The DOFs are those of the grid's window, in which the particles' cells keep away from the border.
+    #[test]
+    fn so_it_does_in_a_window_of_the_grid() {
+        let grid = Grid::new(vector![0.0, 0.0], vector![90.0, 80.0], [90, 80]).unwrap();
+        let grid = grid.with_window(Window::around(&[[30, 50], [37, 54]]));
+        let family = DualDomain::new();
+        let inner = |cell: &Cell<2>| grid.has_numbers(cell, 1);
+        let cells: Vec<_> = (0..40).map(|number| grid.cell(number)).filter(inner).collect();
+        for (k, first) in cells.iter().enumerate() {
+            for (m, last) in cells.iter().enumerate().skip(k) {
+                let window = family.dof_window(&grid, first, last);
+                assert!(window.end <= 9 * 6);
+                for cell in &cells[k..=m] {
+                    family.for_each(&grid, cell, &grid.centre(cell), |dof, _, _| {
+                        assert!(window.contains(&dof), "{first:?} to {last:?}: {dof} of {cell:?}");
+                    });
+                }
+            }
         }
     }
 

@@ -10,7 +10,7 @@ use crate::scalar::Scalar;
 /// Iterations after which the solution is taken as it is. Ten to thirty are usual.
 const MOST_ITERATIONS: usize = 200;
 
-/// Conjugate gradients for [`Lattice`] matrices of masses, all components of the right-hand side at once.
+/// Conjugate gradients for [`Lattice`] matrices of masses, one component of the right-hand side after the other.
 ///
 /// The preconditioner is $S K S$: $K$ the Kronecker product of the axes' mass matrices ([`AxisMasses`]), $S$ diagonal and such
 /// that the product has the diagonal of the matrix. Where material fills the grid evenly it is nearly the inverse; elsewhere $S$
