@@ -3,7 +3,7 @@
 //! Parameters: a box whose sides fit no cell, particles moved at random, crosses a cell and a half on a slant; the same under a body force.
 //! Expected: equal velocities map to equal velocities where mass and momentum are both sums over the particles (Shepard, relaxed TLS), and cause
 //! no strain: exact to round-off. Published TLS fits mass and momentum, also beyond the body's sides, where it knows no surface
-//! beyond one dimension: what round-off leaves grows until it stops.
+//! beyond one dimension: it keeps the speed to a few digits only.
 
 use materialpoint::error::StepError;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
@@ -100,16 +100,11 @@ fn particle_sums_move_and_fall_exactly() {
     }
 }
 
-/// Measured: 1.2e-14 at most in the plane. In space, with cells of eight particles that moved, round-off grows with linear functions (one of
-/// two runs stops) and with dual domain (1e-6); B-splines stay at 3e-14.
+/// Measured: 6e-14 at most.
 #[test]
-fn relaxed_taylor_moves_exactly_in_the_plane() {
-    for pair in flights(RelaxedTaylor, FREE).chunks(2) {
-        let ((method, plane), (_, space)) = (&pair[0], &pair[1]);
-        assert!(is_exact(plane), "{method}: {plane:?}");
-        if method.basis == (Basis::BSpline { degree: 2 }) {
-            assert!(is_exact(space), "{method}: {space:?}");
-        }
+fn relaxed_taylor_moves_exactly() {
+    for (method, found) in flights(RelaxedTaylor, FREE) {
+        assert!(is_exact(&found), "{method}: {found:?}");
     }
 }
 
@@ -122,10 +117,12 @@ fn relaxed_taylor_falls_exactly_in_the_plane() {
     }
 }
 
+/// Measured at the end: 1.6e-4 (linear), 4.6e-5 (dual domain), 7e-6 (B-splines) of the speed.
 #[test]
-fn published_taylor_does_not_bear_free_sides() {
+fn published_taylor_loses_speed_at_free_sides() {
     for pair in flights(Taylor, FREE).chunks(2) {
         let (method, plane) = &pair[0];
-        assert!(!is_exact(plane), "{method}: {plane:?}");
+        let lost = plane.as_ref().map_or(f64::NAN, |found| found[0]);
+        assert!((1e-6..1e-2).contains(&lost), "{method}: {plane:?}");
     }
 }
