@@ -21,6 +21,7 @@ mod checkpoint;
 mod contact;
 mod critical;
 mod diagnostics;
+mod dofs;
 mod forces;
 mod forcing;
 mod lanes;
@@ -28,6 +29,7 @@ mod liquid;
 mod matrix;
 mod order;
 mod pairs;
+mod relax;
 mod simulation;
 mod spans;
 mod velocity;
@@ -50,7 +52,7 @@ use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Cut, Reconstruction};
 use crate::scalar::Scalar;
-use matrix::MassMatrix;
+use dofs::Dofs;
 use order::Order;
 use pairs::Pairs;
 use spans::Spans;
@@ -122,60 +124,6 @@ where
     time: T,
     steps: usize,
     diagnostics: Diagnostics<T>,
-}
-
-/// Data of the DOFs, allocated once for each window.
-#[derive(Clone, Debug)]
-struct Dofs<T, const D: usize> {
-    /// Lumped mass of the particles.
-    mass: Vec<T>,
-    /// Force, then acceleration.
-    force: Vec<SVector<T, D>>,
-    /// Momentum, then velocity.
-    velocity: Vec<SVector<T, D>>,
-    /// Row sums of the reconstructed mass; empty where the particles' lumped mass or the matrix serves.
-    lumped: Vec<T>,
-    /// Consistent mass; of order zero where it is not used.
-    matrix: MassMatrix<T, D>,
-}
-
-impl<T: Scalar, const D: usize> Dofs<T, D> {
-    /// Of no DOF.
-    fn none() -> Self {
-        Self {
-            mass: Vec::new(),
-            force: Vec::new(),
-            velocity: Vec::new(),
-            lumped: Vec::new(),
-            matrix: MassMatrix::none(),
-        }
-    }
-
-    /// `own_mass` is what divides the momenta, if it is not the lumped mass of the particles.
-    fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>, own_mass: Option<VelocityMass>) -> Self {
-        let count = basis.dof_count(grid);
-        let lumped = if own_mass == Some(VelocityMass::Lumped) {
-            count
-        } else {
-            0
-        };
-        Self {
-            mass: vec![T::zero(); count],
-            force: vec![SVector::zeros(); count],
-            velocity: vec![SVector::zeros(); count],
-            lumped: vec![T::zero(); lumped],
-            matrix: match own_mass {
-                Some(VelocityMass::Consistent | VelocityMass::Constrained) => MassMatrix::new(basis, grid),
-                Some(VelocityMass::Lumped) | None => MassMatrix::none(),
-            },
-        }
-    }
-
-    fn bytes(&self) -> usize {
-        size_of::<T>() * (self.mass.len() + self.lumped.len())
-            + self.matrix.bytes()
-            + 2 * size_of::<SVector<T, D>>() * self.force.len()
-    }
 }
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
@@ -392,44 +340,6 @@ where
             self.bins.note_crossings(1);
             self.spans.forget();
         }
-    }
-
-    /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing has used it
-    /// since), the velocity after its update and before it is mapped.
-    fn relax(&mut self, dt: T) {
-        self.measure_crossings(dt);
-        let (crossed, particles) = (&self.crossed[..], &mut self.particles);
-        let cloud = Cloud {
-            grid: &self.grid,
-            bins: &self.bins,
-            positions: &particles.position,
-            volumes: &particles.volume,
-            cuts: &self.cuts,
-        };
-        // The stress of a law that remembers follows from its state, or is bound to it: it must not be moved alone.
-        if size_of::<L::State>() == 0 {
-            self.reconstruction
-                .relax(&cloud, None, crossed, &mut particles.stress);
-        }
-        let mass = Some(&particles.mass[..]);
-        self.reconstruction
-            .relax(&cloud, mass, crossed, &mut particles.velocity);
-    }
-
-    /// Part of each occupied cell that a wave crosses in a step, at the cell's first particle.
-    fn measure_crossings(&mut self, dt: T) {
-        let (law, particles) = (&self.law, &self.particles);
-        let across = dt / self.grid.cell_size().min();
-        self.crossed.clear();
-        let cells = self.bins.occupied().iter();
-        self.crossed.extend(cells.map(|&cell| {
-            let first = self.bins.particles_in(cell as usize).first();
-            let p = first.map_or(0, |&p| p as usize);
-            let density = particles.mass[p] / particles.volume[p];
-            let speed = law.wave_speed(density, &particles.stress[p], &particles.state[p]);
-            // Also where a law has no wave any more: there is then nothing to relax.
-            (speed * across).max(T::zero())
-        }));
     }
 
     /// Finds where surfaces cut cells, in one dimension.
