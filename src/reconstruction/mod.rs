@@ -241,6 +241,15 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         0
     }
 
+    /// Cells that, at the last [`Reconstruction::prepare`], were fitted with virtual points: values that neighbouring
+    /// cells lend because the particles do not determine a fit.
+    fn virtual_cells(&self) -> usize {
+        0
+    }
+
+    /// Whether cells may borrow virtual points, where the reconstruction knows any ([`Taylor::with_virtual_points`]).
+    fn lend_virtual_points(&mut self, _lent: bool) {}
+
     /// Bytes allocated, for the user's information.
     fn bytes(&self) -> usize {
         0

@@ -1,8 +1,12 @@
 //! Taylor least squares.
 
+mod virtual_points;
+
 use std::ops::Range;
 
 use nalgebra::SVector;
+
+use virtual_points::Lent;
 
 use super::gauss::GaussRule;
 use super::{Cloud, Four, Patch, Point, Reconstruction};
@@ -22,15 +26,21 @@ use crate::taylor::{
 ///
 /// Fields (stress) are fitted freely; densities (mass, momentum) keep the cell's integral, because their $a_1$ is the cell's
 /// amount over its volume (journal, equation 14). A cell that a body's surface cuts is fitted and integrated up to the
-/// surface ([`Cloud::cuts`]). A cell never uses more functions than it has particles, nor one that
-/// its layout cannot tell from the others. The functions are those of [`mod@crate::taylor`].
+/// surface ([`Cloud::cuts`]). The functions are those of [`mod@crate::taylor`].
+///
+/// A cell never uses more functions than it has points, nor one that its layout cannot tell from the others: that share of
+/// each function is measured before it is fitted. Where the particles do not determine all functions, *virtual points* can lend a
+/// hand ([`Taylor::with_virtual_points`]); what they do not determine either is left out.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct Taylor<T, const D: usize, const NB: usize> {
     rule: GaussRule<T, D, NB>,
     tolerance: T,
+    virtual_points: bool,
     cells: Vec<CellFits<T, D, NB>>,
+    /// Cells without the full set of functions, and cells with virtual points.
     reduced: usize,
+    lent: usize,
 }
 
 /// The fits of one occupied cell and the box they cover.
@@ -41,6 +51,8 @@ struct CellFits<T, const D: usize, const NB: usize> {
     conserved: CellFit<T, NB>,
     /// Sums of the Taylor functions over the particles.
     sums: SVector<T, NB>,
+    /// Where either fit has a virtual point.
+    lent: Lent,
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> CellFits<T, D, NB> {
@@ -53,6 +65,7 @@ impl<T: Scalar, const D: usize, const NB: usize> CellFits<T, D, NB> {
             free: fit,
             conserved: fit,
             sums: SVector::zeros(),
+            lent: Lent::default(),
         }
     }
 
@@ -67,12 +80,22 @@ impl<T: Scalar, const D: usize, const NB: usize> CellFits<T, D, NB> {
             free: CellFit::with_gram(&gram, points.clone(), 0, tolerance),
             conserved: CellFit::with_gram(&gram, points, 1, tolerance),
             sums: SVector::from_fn(|k, _| gram.sum(k)),
+            lent: Lent::default(),
         }
+    }
+
+    fn free_is_full(&self) -> bool {
+        self.free.functions() == NB
+    }
+
+    /// The given mean is one of the functions and not counted.
+    fn conserved_is_full(&self) -> bool {
+        self.conserved.functions() + 1 == NB
     }
 
     /// Whether both fits have all functions.
     fn is_full(&self) -> bool {
-        self.free.functions() == NB && self.conserved.functions() + 1 == NB
+        self.free_is_full() && self.conserved_is_full()
     }
 }
 
@@ -100,8 +123,10 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         Self {
             rule: GaussRule::new(n),
             tolerance: default_tolerance(D),
+            virtual_points: false,
             cells: Vec::new(),
             reduced: 0,
+            lent: 0,
         }
     }
 
@@ -113,6 +138,17 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         self
     }
 
+    /// Lets a cell whose particles do not determine its fit borrow *virtual points* (journal section 5.3), in one dimension and
+    /// where there are particles in both neighbouring cells: from each of these that is fitted by its own particles with all
+    /// functions, the value of that fit at the common edge is one more point of the least squares. It never enters the mean, so
+    /// every amount is kept as without. Off by default: a smooth field is fitted much better, but runs are no more accurate
+    /// (figures in `docs/stability.md`).
+    #[must_use]
+    pub fn with_virtual_points(mut self, lent: bool) -> Self {
+        self.virtual_points = lent;
+        self
+    }
+
     /// Coefficients of the conserved fit in every occupied cell, ascending, from the amounts (the fit's mean
     /// is the cell's sum of amounts over its volume).
     pub fn conserved_coefficients<Q: Field<T>>(
@@ -120,8 +156,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         cloud: &Cloud<'_, T, D>,
         amount: impl Fn(usize) -> Q,
     ) -> Vec<[Q; NB]> {
-        self.each_cell(cloud)
-            .map(|(cell, fits)| conserved(fits, cloud, cell, &amount))
+        (0..self.cells.len())
+            .map(|place| self.conserved(cloud, place, &amount))
             .collect()
     }
 
@@ -132,11 +168,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         value: impl Fn(usize) -> Q,
         mean: impl Fn(&Cell<D>) -> Q,
     ) -> Vec<[Q; NB]> {
-        self.each_cell(cloud)
-            .map(|(cell, fits)| {
-                let mean = mean(&fits.patch.cell);
-                fit_about_mean(fits, cloud, cell, &value, mean)
-            })
+        (0..self.cells.len())
+            .map(|place| self.about_mean(cloud, place, &value, &mean))
             .collect()
     }
 
@@ -161,14 +194,55 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         cloud: &Cloud<'_, T, D>,
         value: impl Fn(usize) -> Q,
     ) -> Vec<[Q; NB]> {
-        self.each_cell(cloud)
-            .map(|(cell, fits)| free(fits, cloud, cell, &value))
+        (0..self.cells.len())
+            .map(|place| self.free(cloud, place, &value))
             .collect()
     }
 
-    /// Numbers and fits of the occupied cells, ascending.
-    fn each_cell(&self, cloud: &Cloud<'_, T, D>) -> impl Iterator<Item = (usize, &CellFits<T, D, NB>)> {
-        cloud.bins.occupied().iter().map(|&c| c as usize).zip(&self.cells)
+    /// Coefficients of the free fit in the cell at `place` in the list of occupied ones.
+    #[inline(always)]
+    fn free<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        place: usize,
+        value: &impl Fn(usize) -> Q,
+    ) -> [Q; NB] {
+        let fits = &self.cells[place];
+        if D == 1 && fits.lent.to_free() {
+            return self.free_with_lent(cloud, place, value);
+        }
+        free(fits, cloud, cloud.bins.occupied()[place] as usize, value)
+    }
+
+    /// The same of the conserved fit.
+    #[inline(always)]
+    fn conserved<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        place: usize,
+        amount: &impl Fn(usize) -> Q,
+    ) -> [Q; NB] {
+        let fits = &self.cells[place];
+        if D == 1 && fits.lent.to_conserved() {
+            return self.conserved_with_lent(cloud, place, amount);
+        }
+        conserved(fits, cloud, cloud.bins.occupied()[place] as usize, amount)
+    }
+
+    /// The same of the fit with a given mean.
+    fn about_mean<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        place: usize,
+        value: &impl Fn(usize) -> Q,
+        mean: &impl Fn(&Cell<D>) -> Q,
+    ) -> [Q; NB] {
+        let fits = &self.cells[place];
+        if D == 1 && fits.lent.to_conserved() {
+            return self.about_mean_with_lent(cloud, place, value, mean);
+        }
+        let cell = cloud.bins.occupied()[place] as usize;
+        fit_about_mean(fits, cloud, cell, value, mean(&fits.patch.cell))
     }
 }
 
@@ -341,6 +415,10 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
             },
         );
         self.reduced = self.cells.iter().filter(|fits| !fits.is_full()).count();
+        self.lent = 0;
+        if D == 1 && self.virtual_points && self.reduced > 0 {
+            self.lend(cloud);
+        }
     }
 
     #[inline(always)]
@@ -371,10 +449,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         value: impl Fn(usize) -> Q,
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        let numbers = cloud.bins.occupied()[cells.clone()].iter();
-        for (&cell, fits) in numbers.zip(&self.cells[cells]) {
-            let coefficients = free(fits, cloud, cell as usize, &value);
-            self.rule.emit(&fits.patch, &coefficients, &mut sink);
+        for place in cells {
+            let coefficients = self.free(cloud, place, &value);
+            self.rule.emit(&self.cells[place].patch, &coefficients, &mut sink);
         }
     }
 
@@ -386,10 +463,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         amount: impl Fn(usize) -> Q,
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        let numbers = cloud.bins.occupied()[cells.clone()].iter();
-        for (&cell, fits) in numbers.zip(&self.cells[cells]) {
-            let coefficients = conserved(fits, cloud, cell as usize, &amount);
-            self.rule.emit(&fits.patch, &coefficients, &mut sink);
+        for place in cells {
+            let coefficients = self.conserved(cloud, place, &amount);
+            self.rule.emit(&self.cells[place].patch, &coefficients, &mut sink);
         }
     }
 
@@ -457,10 +533,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         let fits = CellFits::new(cloud, cell, self.tolerance);
         let (coefficients, full) = if conserve {
             let amount = |p| value(p).scaled(cloud.volumes[p]);
-            let full = fits.conserved.functions() + 1 == NB;
-            (conserved(&fits, cloud, cell, &amount), full)
+            (conserved(&fits, cloud, cell, &amount), fits.conserved_is_full())
         } else {
-            (free(&fits, cloud, cell, value), fits.free.functions() == NB)
+            (free(&fits, cloud, cell, value), fits.free_is_full())
         };
         self.rule.emit(&fits.patch, &coefficients, &mut sink);
         full
@@ -468,6 +543,14 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
 
     fn reduced_cells(&self) -> usize {
         self.reduced
+    }
+
+    fn virtual_cells(&self) -> usize {
+        self.lent
+    }
+
+    fn lend_virtual_points(&mut self, lent: bool) {
+        self.virtual_points = lent;
     }
 
     fn bytes(&self) -> usize {

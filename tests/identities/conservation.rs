@@ -123,6 +123,52 @@ proptest! {
     }
 }
 
+/// A virtual point changes how an amount is spread over its cell, and not the amount.
+fn with_virtual_points<T: Scalar>(layout: &Layout<1>) -> Result<(), TestCaseError> {
+    let mut taylor = Taylor::<T, 1, 3>::new().with_virtual_points(true);
+    keeps_every_cell(&mut taylor, layout, 2, 3)
+}
+
+/// Neighbours lend what they know: a parabola is seen by every cell that then has all functions, whatever its own particles.
+fn reproduces_a_parabola(layout: &Layout<1>) -> Result<(), TestCaseError> {
+    let (body, mut taylor) = (
+        layout.body::<f64>(),
+        Taylor::<f64, 1, 3>::new().with_virtual_points(true),
+    );
+    taylor.prepare(&body.cloud());
+    if taylor.reduced_cells() > 0 {
+        return Ok(());
+    }
+    let (min, h) = (layout.min, layout.h);
+    // In cells from the grid's lower end.
+    let parabola = |x: f64| 1.0 - 2.0 * x + x * x;
+    let fits = taylor.free_coefficients(&body.cloud(), |p| parabola((body.positions[p][0] - min) / h));
+    for (fit, &cell) in fits.iter().zip(body.bins.occupied()) {
+        let centre = f64::from(cell) + 0.5;
+        let exact = [parabola(centre) + 1.0 / 12.0, centre - 1.0, 0.5];
+        for (found, expected) in fit.iter().zip(exact) {
+            // Places are rounded in the size of `min`; a share of 2 % of a function magnifies that by 50, twice.
+            prop_assert!((found - expected).abs() < 1e-9, "{cell}: {fit:?} {exact:?}");
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    fn virtual_points_keep_the_amounts_of_every_cell(layout in layouts::<1>(12, 5)) {
+        with_virtual_points::<f64>(&layout)?;
+        with_virtual_points::<f32>(&layout)?;
+    }
+
+    #[test]
+    fn virtual_points_reproduce_a_parabola(layout in layouts::<1>(3, 5)) {
+        reproduces_a_parabola(&layout)?;
+    }
+}
+
 /// Relative to the amounts themselves, conservation is only as good as the fit's coefficients are small: at most some
 /// five roundings of the largest.
 fn keeps_cells_relative_to_coefficients<const D: usize, const NB: usize>(
