@@ -24,7 +24,7 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
             ),
             (
                 "taylor",
-                "Taylor least squares per cell and Gauss points: keeps mass and momentum",
+                "Taylor least squares per cell and Gauss points: keeps mass and momentum; virtual_points = true in 1-D",
             ),
             (
                 "relaxed-taylor",

@@ -109,6 +109,7 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         bytes_per_particle,
         grid_crossings,
         reduced_cells,
+        virtual_cells,
         errors,
         conservation,
         energy,
@@ -139,8 +140,12 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         "  speed         {wall_seconds:.3} s, {:.2} million particle steps per second, {bytes_per_particle:.0} bytes per particle",
         particle_steps_per_second / 1e6
     ));
+    let lent = match virtual_cells {
+        0 => String::new(),
+        n => format!(", {n} with virtual points"),
+    };
     lines.push(format!(
-        "  crossings     {grid_crossings} of cell edges; at most {reduced_cells} cells a step fitted with fewer functions"
+        "  crossings     {grid_crossings} of cell edges; at most {reduced_cells} cells a step fitted with fewer functions{lent}"
     ));
     let width = errors.keys().map(|field| field.len()).fold(13, usize::max);
     for (field, norms) in errors {

@@ -134,7 +134,7 @@ impl<L> Rest<'_, L> {
     fn stepper<T, B, R, P, const D: usize>(
         self,
         basis: B,
-        reconstruction: R,
+        mut reconstruction: R,
         phase: P,
         mut particles: Particles<T, D, L::State, P::Particle>,
     ) -> Built<D>
@@ -147,6 +147,7 @@ impl<L> Rest<'_, L> {
         P: Phase<T, D> + Clone + 'static,
         P::Particle: Record<T>,
     {
+        reconstruction.lend_virtual_points(self.scene.method.virtual_points);
         if self.scene.bodies.iter().any(|body| body.stress.is_some()) {
             particles.start_under_stress(&self.law, |_, _| None)?;
         }

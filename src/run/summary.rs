@@ -123,6 +123,8 @@ pub struct Summary {
     pub grid_crossings: usize,
     /// Most cells in one step that were fitted with fewer functions than the method's.
     pub reduced_cells: usize,
+    /// Most cells in one step that were fitted with virtual points of their neighbours.
+    pub virtual_cells: usize,
     /// Errors by field.
     pub errors: BTreeMap<&'static str, ErrorNorms>,
     /// Conservation by phase.
@@ -172,6 +174,7 @@ impl Summary {
             bytes_per_particle: simulation.bytes_per_particle(),
             grid_crossings: diagnostics.grid_crossings,
             reduced_cells: diagnostics.reduced_cells,
+            virtual_cells: diagnostics.virtual_cells,
             errors: BTreeMap::new(),
             conservation,
             energy: EnergySummary {

@@ -105,6 +105,7 @@ impl Scene {
         scene.method.basis = method.basis;
         scene.method.reconstruction = method.reconstruction;
         scene.method.subpoints = method.subpoints;
+        scene.method.virtual_points &= method.reconstruction == ReconstructionKind::Taylor;
         let has_no_other = matches!(
             method.reconstruction,
             ReconstructionKind::Shepard | ReconstructionKind::RelaxedTaylor

@@ -57,6 +57,8 @@ pub struct Method {
     pub reconstruction: ReconstructionKind,
     /// Sub-points of each particle's domain, 1 to 128; more than one with dual domain and Shepard only.
     pub subpoints: u8,
+    /// Whether cells whose particles do not determine their fit borrow virtual points; Taylor in one dimension only.
+    pub virtual_points: bool,
     /// Mass behind the DOFs' velocities.
     pub velocity_mass: VelocityMass,
     /// Floating-point type.

@@ -98,6 +98,10 @@ fn method_and_cells_can_be_changed_afterwards() {
     assert_eq!(sub_points.method.subpoints, 4);
     let back = sub_points.with_method(method::Method::new(Basis::Linear, ReconstructionKind::Taylor));
     assert_eq!(back.method.subpoints, 1);
+    let lent = read(&["method.reconstruction=taylor", "method.virtual_points=true"]).unwrap();
+    assert!(lent.method.virtual_points);
+    let plain = method::Method::new(Basis::Linear, ReconstructionKind::Shepard);
+    assert!(!lent.with_method(plain).method.virtual_points);
 }
 
 #[test]

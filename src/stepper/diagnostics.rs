@@ -32,6 +32,8 @@ pub struct Diagnostics<T> {
     pub grid_crossings: usize,
     /// Most cells in one step that could not be fitted with the full set of functions.
     pub reduced_cells: usize,
+    /// Most cells in one step that were fitted with virtual points of their neighbours.
+    pub virtual_cells: usize,
     /// Mass of all particles.
     pub total_mass: T,
 }
@@ -64,12 +66,17 @@ impl<T: Scalar> Diagnostics<T> {
             liquid_conservation: flows.then_some(none),
             grid_crossings: 0,
             reduced_cells: 0,
+            virtual_cells: 0,
             total_mass,
         }
     }
 
     pub(super) fn record_reduced(&mut self, cells: usize) {
         self.reduced_cells = self.reduced_cells.max(cells);
+    }
+
+    pub(super) fn record_virtual(&mut self, cells: usize) {
+        self.virtual_cells = self.virtual_cells.max(cells);
     }
 
     /// Compares the mapped totals with those of the particles.

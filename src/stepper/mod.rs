@@ -314,6 +314,8 @@ where
         self.reconstruction.prepare(&cloud);
         let reduced = self.reconstruction.reduced_cells();
         self.diagnostics.record_reduced(reduced);
+        self.diagnostics
+            .record_virtual(self.reconstruction.virtual_cells());
     }
 
     /// Whether fits are made and integrated for four cells at a time, so that nothing of them need be kept. A consistent

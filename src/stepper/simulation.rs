@@ -126,6 +126,7 @@ where
             liquid_conservation,
             grid_crossings,
             reduced_cells,
+            virtual_cells,
             total_mass,
         } = self.diagnostics;
         Diagnostics {
@@ -133,6 +134,7 @@ where
             liquid_conservation: liquid_conservation.as_ref().map(cast_conservation),
             grid_crossings,
             reduced_cells,
+            virtual_cells,
             total_mass: total_mass.primal(),
         }
     }

@@ -106,6 +106,21 @@ fn no_step_allocates() {
     }
 }
 
+/// Nor where cells borrow virtual points.
+#[test]
+fn no_step_with_virtual_points_allocates() {
+    let set = ["method.virtual_points=true", "body.0.particles_per_cell=[3]"].map(String::from);
+    let scene = Scene::from_toml(Scene::builtin("vibrating-bar-large").unwrap(), &set).unwrap();
+    let mut simulation = simulation_in::<1>(&scene).unwrap();
+    let steps = allocation_counter::measure(|| {
+        for _ in 0..1000 {
+            simulation.step(1e-4, &Forcing::none()).unwrap();
+        }
+    });
+    assert!(simulation.diagnostics().virtual_cells > 0);
+    assert_eq!(steps.count_total, 0);
+}
+
 /// In the plane windows and the particles' order change too; 9216 particles make several spans. On one thread: a pool of several has
 /// a queue of its own, which takes memory now and then.
 #[test]

@@ -57,6 +57,8 @@ fn run_prints_one_json_object_and_nothing_else() {
         "particle_steps_per_second",
         "bytes_per_particle",
         "grid_crossings",
+        "reduced_cells",
+        "virtual_cells",
         "errors",
         "conservation",
         "energy",

@@ -250,6 +250,7 @@ fn any_value_in_any_place_is_read_or_refused_in_one_line() {
         "method.basis",
         "method.degree",
         "method.subpoints",
+        "method.virtual_points",
         "method.scalar",
         "material.phases",
         "material.law",

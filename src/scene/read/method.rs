@@ -6,11 +6,12 @@ use crate::mass::VelocityMass;
 use crate::reconstruction::SubPoints;
 use crate::scene::{Basis, Method, ReconstructionKind, ScalarKind, SceneError};
 
-const KEYS: [&str; 6] = [
+const KEYS: [&str; 7] = [
     "basis",
     "degree",
     "reconstruction",
     "subpoints",
+    "virtual_points",
     "velocity_mass",
     "scalar",
 ];
@@ -31,6 +32,7 @@ pub(super) fn read(section: Section<'_>, dimension: usize, phases: PhaseCount) -
         basis,
         reconstruction,
         subpoints: subpoints(&section, basis, reconstruction)?,
+        virtual_points: virtual_points(&section, dimension, reconstruction)?,
         velocity_mass: velocity_mass(&section, reconstruction)?,
         scalar: match section.optional("scalar") {
             Some(item) => item.choice(&[("f64", ScalarKind::F64), ("f32", ScalarKind::F32)], &[])?,
@@ -97,6 +99,24 @@ fn subpoints(
     }
     let count = item.count(1, SubPoints::MOST.into())?;
     u8::try_from(count).map_err(|_| item.not_allowed("a smaller number"))
+}
+
+/// None unless asked for.
+fn virtual_points(
+    section: &Section<'_>,
+    dimension: usize,
+    reconstruction: ReconstructionKind,
+) -> Result<bool, SceneError> {
+    let Some(item) = section.optional("virtual_points") else {
+        return Ok(false);
+    };
+    let wanted = item.flag("true or false")?;
+    if wanted && (reconstruction != ReconstructionKind::Taylor || dimension > 1) {
+        return Err(item.conflict(
+            "it goes with method.reconstruction = \"taylor\" in one dimension only; leave it out",
+        ));
+    }
+    Ok(wanted)
 }
 
 fn velocity_mass(

@@ -156,6 +156,7 @@ impl<T: Scalar> Diagnostics<T> {
             liquid_conservation,
             grid_crossings,
             reduced_cells,
+            virtual_cells,
             // Of the setup, as whether a liquid flows.
             total_mass: _,
         } = self;
@@ -166,7 +167,8 @@ impl<T: Scalar> Diagnostics<T> {
             out.numbers(&[errors.mass, errors.momentum, errors.momentum_scaled])?;
         }
         out.count(*grid_crossings)?;
-        out.count(*reduced_cells)
+        out.count(*reduced_cells)?;
+        out.count(*virtual_cells)
     }
 
     fn restore(&mut self, from: &mut In<'_>) -> Result<(), RestoreError> {
@@ -183,6 +185,7 @@ impl<T: Scalar> Diagnostics<T> {
         }
         self.grid_crossings = from.count()?;
         self.reduced_cells = from.count()?;
+        self.virtual_cells = from.count()?;
         Ok(())
     }
 }

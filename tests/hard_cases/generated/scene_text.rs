@@ -276,6 +276,7 @@ struct Method {
     reconstruction: &'static str,
     velocity_mass: Option<&'static str>,
     subpoints: Option<u8>,
+    virtual_points: bool,
     single: bool,
 }
 
@@ -289,15 +290,17 @@ fn method() -> impl Strategy<Value = Method> {
         reconstructions,
         prop::option::of(mass),
         prop::option::of(1..=6_u8),
+        any::<bool>(),
         one_in(8),
     );
     parts.prop_map(
-        |(basis, degree, reconstruction, velocity_mass, subpoints, single)| Method {
+        |(basis, degree, reconstruction, velocity_mass, subpoints, virtual_points, single)| Method {
             basis,
             degree,
             reconstruction,
             velocity_mass,
             subpoints,
+            virtual_points,
             single,
         },
     )
@@ -320,6 +323,9 @@ impl Method {
         }
         if let (Some(subpoints), "dual-domain", "shepard") = (self.subpoints, self.basis, reconstruction) {
             line!(text, "subpoints = {subpoints}");
+        }
+        if self.virtual_points && reconstruction == "taylor" {
+            line!(text, "virtual_points = true");
         }
         if let (Some(mass), "taylor" | "spline") = (self.velocity_mass, reconstruction) {
             line!(text, "velocity_mass = \"{mass}\"");
