@@ -16,6 +16,10 @@ pub trait Field<T>: Copy + Zero + Send {
     /// Number of scalars in it.
     const COMPONENTS: usize;
 
+    /// Which of its scalars, the `i`-th as bit `i`, are densities of something that is nowhere negative (mass). Conservative
+    /// reconstructions keep them positive where they stream them.
+    const DENSITIES: u32 = 0;
+
     /// Its `i`-th scalar, `i < COMPONENTS`.
     fn component(&self, i: usize) -> T;
 
@@ -98,6 +102,7 @@ where
     T: Copy,
 {
     const COMPONENTS: usize = A::COMPONENTS + B::COMPONENTS;
+    const DENSITIES: u32 = A::DENSITIES | B::DENSITIES << A::COMPONENTS;
 
     #[inline(always)]
     fn component(&self, i: usize) -> T {
@@ -161,6 +166,7 @@ impl<T: Scalar, const D: usize> Zero for MassMomentum<T, D> {
 
 impl<T: Scalar, const D: usize> Field<T> for MassMomentum<T, D> {
     const COMPONENTS: usize = 1 + D;
+    const DENSITIES: u32 = 1;
 
     #[inline(always)]
     fn component(&self, i: usize) -> T {

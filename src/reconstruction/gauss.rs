@@ -4,14 +4,21 @@ use nalgebra::SVector;
 
 use super::{Patch, Point};
 use crate::field::Field;
-use crate::lanes::Lanes;
+use crate::lanes::{LANES, Lanes};
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
 use crate::taylor::{MOST_COMPONENTS, taylor_functions};
 
+/// Least share of its mean that a fitted density keeps at the points.
+const LEAST_DENSITY: f64 = 1e-2;
+
 /// Gauss-Legendre rule of the reference cell with the Taylor functions at its points.
 #[derive(Clone, Debug)]
-pub(super) struct GaussRule<T, const D: usize, const NB: usize>(Vec<Node<T, D, NB>>);
+pub(super) struct GaussRule<T, const D: usize, const NB: usize> {
+    nodes: Vec<Node<T, D, NB>>,
+    /// Largest size of each function at the points.
+    bounds: SVector<T, NB>,
+}
 
 /// Local coordinates, weight as share of the cell, Taylor functions.
 #[derive(Clone, Debug)]
@@ -37,7 +44,73 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
             let psi = taylor_functions(&s);
             Node { s, share, psi }
         });
-        Self(nodes.collect())
+        let nodes: Vec<_> = nodes.collect();
+        let bounds = SVector::from_fn(|k, _| {
+            let sizes = nodes.iter().map(|node: &Node<T, D, NB>| node.psi[k].abs());
+            sizes.fold(T::zero(), T::max)
+        });
+        Self { nodes, bounds }
+    }
+
+    /// Draws the fit of a density towards its mean, with all fields that are fitted beside it (so that the velocity that mass and
+    /// momentum share stays), as far as it must for the density to be positive at the points: [`LEAST_DENSITY`] of its mean.
+    /// Every function but the mean integrates to zero (by two points an axis and more), so the integral stays. Also says whether anything had to be done.
+    #[inline(always)]
+    pub(super) fn keep_positive<Q: Field<T>>(&self, coefficients: [Q; NB]) -> ([Q; NB], bool) {
+        let clearly = (0..Q::COMPONENTS).all(|q| {
+            let reach = (1..NB).fold(T::zero(), |sum, k| {
+                sum + coefficients[k].component(q).abs() * self.bounds[k]
+            });
+            !is_density::<T, Q>(q) || reach <= coefficients[0].component(q) * may_lose::<T>()
+        });
+        if clearly {
+            return (coefficients, false);
+        }
+        self.draw_to_mean(coefficients)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn draw_to_mean<Q: Field<T>>(&self, mut coefficients: [Q; NB]) -> ([Q; NB], bool) {
+        let mut share = T::one();
+        for q in (0..Q::COMPONENTS).filter(|&q| is_density::<T, Q>(q)) {
+            let may = (coefficients[0].component(q) * may_lose::<T>()).max(T::zero());
+            for node in &self.nodes {
+                let loss = (1..NB).fold(T::zero(), |sum, k| {
+                    sum - coefficients[k].component(q) * node.psi[k]
+                });
+                if loss * share > may {
+                    share = may / loss;
+                }
+            }
+        }
+        let drawn = share < T::one();
+        if drawn {
+            for coefficient in &mut coefficients[1..] {
+                *coefficient = coefficient.scaled(share);
+            }
+        }
+        (coefficients, drawn)
+    }
+
+    /// In which of four cells that may have to be done.
+    #[inline(always)]
+    pub(super) fn may_be_negative<V: Lanes<T>, Q: Field<T>>(
+        &self,
+        coefficients: &[[V; MOST_COMPONENTS]; NB],
+    ) -> [bool; LANES] {
+        let mut negative = [false; LANES];
+        for q in (0..Q::COMPONENTS).filter(|&q| is_density::<T, Q>(q)) {
+            let mut reach = V::splat(T::zero());
+            for k in 1..NB {
+                reach = coefficients[k][q].abs().mul_add(V::splat(self.bounds[k]), reach);
+            }
+            let beyond = reach
+                .above(coefficients[0][q] * V::splat(may_lose::<T>()))
+                .array();
+            negative = std::array::from_fn(|l| negative[l] || beyond[l] != T::zero());
+        }
+        negative
     }
 
     /// Points along each axis for a basis of degree `degree`: two as published for degrees 1 and 2, `degree + 1` beyond. Two
@@ -48,8 +121,8 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
 
     /// Local coordinates of the points along an axis.
     pub(super) fn line(&self) -> impl Iterator<Item = T> {
-        let beyond = |node: &&Node<T, D, NB>| (1..D).all(|axis| node.s[axis] == self.0[0].s[axis]);
-        self.0.iter().take_while(beyond).map(|node| node.s[0])
+        let beyond = |node: &&Node<T, D, NB>| (1..D).all(|axis| node.s[axis] == self.nodes[0].s[axis]);
+        self.nodes.iter().take_while(beyond).map(|node| node.s[0])
     }
 
     /// Streams polynomials over four cells of the given volume: the number of the point, then the values times the weight.
@@ -61,7 +134,7 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
         components: usize,
         sink: &mut impl FnMut(usize, &[V; MOST_COMPONENTS]),
     ) {
-        for (number, node) in self.0.iter().enumerate() {
+        for (number, node) in self.nodes.iter().enumerate() {
             let weight = V::splat(volume * node.share);
             let mut values = [V::splat(T::zero()); MOST_COMPONENTS];
             for k in (0..NB).rev() {
@@ -87,7 +160,7 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
     ) {
         let volume = patch.volume();
         let cell = patch.cell;
-        for node in &self.0 {
+        for node in &self.nodes {
             let value = polynomial(&node.psi, coefficients);
             let position = patch.position(&node.s);
             sink(&Point { cell, position }, value.scaled(volume * node.share));
@@ -104,12 +177,24 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
     ) {
         let volume = patch.volume();
         let cell = patch.cell;
-        for node in &self.0 {
+        for node in &self.nodes {
             let position = patch.position(&node.s);
             let value = polynomial(&taylor_functions(&frame.local(&position)), coefficients);
             sink(&Point { cell, position }, value.scaled(volume * node.share));
         }
     }
+}
+
+/// Whether component `q` is a density.
+#[inline(always)]
+const fn is_density<T, Q: Field<T>>(q: usize) -> bool {
+    Q::DENSITIES >> q & 1 == 1
+}
+
+/// The share of its mean that a density may lose at a point.
+#[inline(always)]
+fn may_lose<T: Scalar>() -> T {
+    T::one() - T::lit(LEAST_DENSITY)
 }
 
 /// `sum_k a_k psi_k`, the highest function first: the mean, usually the largest part, is rounded last.

@@ -247,6 +247,12 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         0
     }
 
+    /// Cells in which the last [`Reconstruction::integrate_conserved`] had to keep a density positive ([`Field::DENSITIES`]), and
+    /// drew all that it streamed towards its mean. What belongs to those densities must be streamed together with them there.
+    fn limited_cells(&self) -> usize {
+        0
+    }
+
     /// Whether cells may borrow virtual points, where the reconstruction knows any ([`Taylor::with_virtual_points`]).
     fn lend_virtual_points(&mut self, _lent: bool) {}
 

@@ -121,8 +121,12 @@ where
         self.liquid.velocity.fill(SVector::zeros());
     }
 
-    /// Momenta from the reconstructed densities.
+    /// Momenta from the reconstructed densities. Where a mass had to be kept positive its momentum was drawn towards the mean with
+    /// it, and must be again.
     fn integrate_momenta(&mut self) {
+        if self.reconstruction.limited_cells() > 0 {
+            return self.integrate_momenta_of_masses();
+        }
         let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
         let (solid, liquid) = (&mut self.dofs.velocity, &mut self.liquid.velocity);
         let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
@@ -136,6 +140,21 @@ where
             });
     }
 
+    #[cold]
+    fn integrate_momenta_of_masses(&mut self) {
+        let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
+        let (solid, liquid) = (&mut self.dofs.velocity, &mut self.liquid.velocity);
+        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
+        let amounts = amounts(phase, &self.particles);
+        self.reconstruction
+            .integrate_conserved(&cloud, amounts, |point, Pair(of_solid, of_liquid)| {
+                basis.for_each_at_fixed_point(grid, &point.cell, &point.position, |i, phi, _| {
+                    solid[i] += of_solid.momentum * phi;
+                    liquid[i] += of_liquid.momentum * phi;
+                });
+            });
+    }
+
     /// Momenta and row sums of both masses from the reconstructed densities.
     fn integrate_lumped(&mut self) {
         let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
@@ -145,12 +164,12 @@ where
         let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
         let amounts = amounts(phase, &self.particles);
         self.reconstruction
-            .integrate_conserved(&cloud, amounts, |point, Pair(masses, momenta)| {
+            .integrate_conserved(&cloud, amounts, |point, Pair(of_solid, of_liquid)| {
                 basis.for_each_at_fixed_point(grid, &point.cell, &point.position, |i, phi, _| {
-                    solid.lumped[i] += masses.0 * phi;
-                    liquid.lumped[i] += masses.1 * phi;
-                    solid.velocity[i] += momenta.0 * phi;
-                    liquid.velocity[i] += momenta.1 * phi;
+                    solid.lumped[i] += of_solid.mass * phi;
+                    liquid.lumped[i] += of_liquid.mass * phi;
+                    solid.velocity[i] += of_solid.momentum * phi;
+                    liquid.velocity[i] += of_liquid.momentum * phi;
                 });
             });
     }
@@ -164,12 +183,12 @@ where
         let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
         let amounts = amounts(phase, &self.particles);
         self.reconstruction
-            .integrate_conserved(&cloud, amounts, |point, Pair(masses, momenta)| {
+            .integrate_conserved(&cloud, amounts, |point, Pair(of_solid, of_liquid)| {
                 let (cell, x) = (&point.cell, &point.position);
                 basis.for_each_at_fixed_point(grid, cell, x, |i, phi_i, _| {
-                    solid.velocity[i] += momenta.0 * phi_i;
-                    liquid.velocity[i] += momenta.1 * phi_i;
-                    let (m_s, m_w) = (masses.0 * phi_i, masses.1 * phi_i);
+                    solid.velocity[i] += of_solid.momentum * phi_i;
+                    liquid.velocity[i] += of_liquid.momentum * phi_i;
+                    let (m_s, m_w) = (of_solid.mass * phi_i, of_liquid.mass * phi_i);
                     basis.for_each_at_fixed_point(grid, cell, x, |j, phi_j, _| {
                         solid.matrix.add(i, j, m_s * phi_j);
                         liquid.matrix.add(i, j, m_w * phi_j);
@@ -220,20 +239,25 @@ where
     }
 }
 
+/// Of solid and liquid.
+type Amounts<T, const D: usize> = Pair<MassMomentum<T, D>, MassMomentum<T, D>>;
+
 /// Masses and momenta of solid and liquid of each particle.
 #[inline(always)]
 fn amounts<'a, T, const D: usize, S, P>(
     phase: &'a P,
     particles: &'a Particles<T, D, S, P::Particle>,
-) -> impl Fn(usize) -> Pair<Pair<T, T>, Momenta<T, D>> + 'a
+) -> impl Fn(usize) -> Amounts<T, D> + 'a
 where
     T: Scalar,
     P: Phase<T, D>,
 {
     let momenta = momenta(phase, particles);
     move |p| {
-        let masses = Pair(particles.mass[p], phase.liquid_mass(particles.volume[p]));
-        Pair(masses, momenta(p))
+        let Pair(solid, liquid) = momenta(p);
+        let (mass, liquid_mass) = (particles.mass[p], phase.liquid_mass(particles.volume[p]));
+        let of = |mass, momentum| MassMomentum { mass, momentum };
+        Pair(of(mass, solid), of(liquid_mass, liquid))
     }
 }
 
