@@ -151,7 +151,7 @@ impl Found {
 }
 
 /// Of the 16 layouts: how many do not last (give or take one that is just about to show it).
-const PASSING: [(usize, usize); 6] = [(1, 4), (2, 4), (4, 14), (5, 3), (7, 16), (8, 4)];
+const PASSING: [(usize, usize); 6] = [(1, 5), (2, 4), (4, 14), (5, 3), (7, 15), (8, 4)];
 
 #[test]
 fn without_an_energy_some_layouts_are_and_the_prediction_holds_for_them() {

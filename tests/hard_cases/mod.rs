@@ -13,5 +13,6 @@ mod extreme;
 mod generated;
 mod long_runs;
 mod partly_filled;
+mod positive_density;
 mod precision;
 mod weak_dof;

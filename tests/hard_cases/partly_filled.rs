@@ -199,13 +199,18 @@ fn a_free_end_sweeps_through_cells() {
     }
 }
 
-/// Published TLS does not bear a free end of which it does not know: it ends in a typed error.
+/// Published TLS does not bear a free end of which it does not know: it ends in a typed error or, with lumped masses that are positive and the
+/// bases whose slopes reach far, with 2e4 and 4e6 times the energy.
 #[test]
 fn an_unknown_free_end_ends_published_fits() {
     for variant in variants().filter(|v| matches!(v.1, TaylorLumped | TaylorConsistent)) {
         let (highest, ended) = drifting(variant, 8, false);
         let left = matches!(ended, Err(StepError::LeftGrid { .. }));
-        assert!(left && highest > 1e3, "{variant:?}: {highest:e}, {ended:?}");
+        let bounded = ended.is_ok() && variant.1 == TaylorLumped;
+        assert!(
+            (left || bounded) && highest > 1e3,
+            "{variant:?}: {highest:e}, {ended:?}"
+        );
     }
 }
 
@@ -265,12 +270,7 @@ fn a_gap_that_closes_and_opens_keeps_mass_and_momentum() {
         let mut simulation = bodies.simulation(variant);
         let (mut least, mut lost) = (f64::INFINITY, 0.0_f64);
         for _ in 0..1500 {
-            let step = simulation.step(0.01, &Forcing::none());
-            if variant == (BSpline, TaylorConsistent) && step.is_err() {
-                // By then it has gained enough to leave the grid.
-                break;
-            }
-            step.unwrap();
+            simulation.step(0.01, &Forcing::none()).unwrap();
             let found = simulation.particles();
             least = least.min(found.position[20][0] - found.position[19][0]);
             let momentum: f64 = found
@@ -288,14 +288,9 @@ fn a_gap_that_closes_and_opens_keeps_mass_and_momentum() {
         let kept = errors.mass < 1e-14 && errors.momentum_scaled < 1e-14 && lost < 1e-13;
         assert!(kept, "{variant:?}: {errors:?}, {lost:e}");
         // The bars meet when they share a cell's functions, from 0.65 apart, and part slowly where the fits through
-        // neighbours see both (B-splines reach furthest). Published TLS with B-splines and the consistent mass gains so much
-        // energy that they go through each other.
+        // neighbours see both (B-splines reach furthest). With densities that may be negative published TLS with B-splines and the
+        // consistent mass gained so much energy that they went through each other.
         let way = if variant == (BSpline, Relaxed) { 0.05 } else { 0.2 };
-        let parted = least < 0.3 && gap > least + way;
-        assert_eq!(
-            parted,
-            variant != (BSpline, TaylorConsistent),
-            "{variant:?}: {least} {gap}"
-        );
+        assert!(least < 0.3 && gap > least + way, "{variant:?}: {least} {gap}");
     }
 }
