@@ -559,8 +559,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         self.rule
             .emit_lanes(volume, &fits.coefficients, Q::COMPONENTS, &mut sink);
         let mut four = Four::default();
+        four.hard[..group.len].copy_from_slice(&hard[..group.len]);
         for l in 0..group.len {
-            four.hard[l] = hard[l];
             four.reduced += usize::from(!hard[l] && fits.functions[l] + first < NB);
         }
         four

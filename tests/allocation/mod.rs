@@ -111,10 +111,14 @@ fn no_step_allocates() {
 fn no_step_with_virtual_points_allocates() {
     let set = ["method.virtual_points=true", "body.0.particles_per_cell=[3]"].map(String::from);
     let scene = Scene::from_toml(Scene::builtin("vibrating-bar-large").unwrap(), &set).unwrap();
+    let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
+    let forcing = ends
+        .into_iter()
+        .fold(Forcing::none(), |f, end| f.with_face(end, FaceCondition::fixed()));
     let mut simulation = simulation_in::<1>(&scene).unwrap();
     let steps = allocation_counter::measure(|| {
         for _ in 0..1000 {
-            simulation.step(1e-4, &Forcing::none()).unwrap();
+            simulation.step(1e-4, &forcing).unwrap();
         }
     });
     assert!(simulation.diagnostics().virtual_cells > 0);
