@@ -8,6 +8,7 @@ use nalgebra::SMatrix;
 
 use self::cone::Cone;
 use super::elastic_stretch::{ElasticStretch, Principal, stored_energy, wave_modulus};
+use super::linear_elastic::hooke_strain_at;
 use super::von_mises::deviator;
 use super::{ConstitutiveLaw, Moduli};
 use crate::error::SetupError;
@@ -148,6 +149,21 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for DruckerPrager<T> {
         };
         let slack = T::default_epsilon().sqrt() * self.moduli.mu * principal.strain.norm();
         (self.yield_function(&state) <= slack).then_some(state)
+    }
+
+    #[inline]
+    fn strain_for(
+        &self,
+        change: &SMatrix<T, D, D>,
+        density: T,
+        stress: &SMatrix<T, D, D>,
+        state: &Self::State,
+    ) -> Option<SMatrix<T, D, D>> {
+        if state.gap > T::zero() {
+            return None;
+        }
+        let speed = self.wave_speed(density, stress, state);
+        hooke_strain_at(&self.moduli, change, density * speed * speed)
     }
 
     /// That of elastic waves, which plastic ones never outrun; of separated material what it will be on contact, or more.

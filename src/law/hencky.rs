@@ -3,6 +3,7 @@
 use nalgebra::SMatrix;
 
 use super::elastic_stretch::{ElasticStretch, stored_energy, wave_modulus};
+use super::linear_elastic::hooke_strain_at;
 use super::{ConstitutiveLaw, Moduli};
 use crate::scalar::Scalar;
 
@@ -54,6 +55,18 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hencky<T> {
 
     fn start(&self, stress: &SMatrix<T, D, D>, off_plane: Option<T>) -> Option<Self::State> {
         ElasticStretch::under_stress(&self.moduli, stress, off_plane)
+    }
+
+    #[inline]
+    fn strain_for(
+        &self,
+        change: &SMatrix<T, D, D>,
+        density: T,
+        stress: &SMatrix<T, D, D>,
+        state: &Self::State,
+    ) -> Option<SMatrix<T, D, D>> {
+        let speed = self.wave_speed(density, stress, state);
+        hooke_strain_at(&self.moduli, change, density * speed * speed)
     }
 
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T {

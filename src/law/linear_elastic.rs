@@ -28,6 +28,35 @@ pub(super) fn hooke<T: Scalar, const D: usize>(moduli: &Moduli<T>, e: &SMatrix<T
     stress
 }
 
+/// The strain without parts off the plane that [`hooke`] gives this stress.
+#[inline]
+fn hooke_strain<T: Scalar, const D: usize>(
+    moduli: &Moduli<T>,
+    stress: &SMatrix<T, D, D>,
+) -> SMatrix<T, D, D> {
+    if D == 1 {
+        return stress / moduli.p_wave();
+    }
+    let two_mu = moduli.mu + moduli.mu;
+    let mean = moduli.lambda * stress.trace() / (T::count(D) * moduli.lambda + two_mu);
+    let mut strain = *stress;
+    for a in 0..D {
+        strain[(a, a)] -= mean;
+    }
+    strain / two_mu
+}
+
+/// The same of material that is stiffer or softer now: `modulus` (Pa) of its fastest wave. `None` if it bears nothing.
+#[inline]
+pub(super) fn hooke_strain_at<T: Scalar, const D: usize>(
+    moduli: &Moduli<T>,
+    stress: &SMatrix<T, D, D>,
+    modulus: T,
+) -> Option<SMatrix<T, D, D>> {
+    let bears = modulus > T::zero();
+    bears.then(|| hooke_strain(moduli, stress) * (moduli.p_wave() / modulus))
+}
+
 /// `sigma : C^-1 : sigma / 2` for plane or uniaxial strain, where the strains off the plane are zero.
 pub(super) fn complementary_energy<T: Scalar, const D: usize>(
     moduli: &Moduli<T>,

@@ -88,6 +88,24 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Sync {
         (free || size_of::<Self::State>() == 0).then(Self::State::default)
     }
 
+    /// Strain that changes the stress by about `change` (Pa), for a reconstruction that moves stresses a little towards what it
+    /// sees of them: a stress that follows from a state is moved with it, by an [`ConstitutiveLaw::update`] over this strain. `None`
+    /// if it must be left alone, as of material that is separated.
+    ///
+    /// Unless told otherwise the change over the modulus of the fastest wave: that moves the stress of any stable material
+    /// in the right direction, though not all of it as fast.
+    #[inline]
+    fn strain_for(
+        &self,
+        change: &SMatrix<T, D, D>,
+        density: T,
+        stress: &SMatrix<T, D, D>,
+        state: &Self::State,
+    ) -> Option<SMatrix<T, D, D>> {
+        let speed = self.wave_speed(density, stress, state);
+        (speed > T::zero()).then(|| change / (density * speed * speed))
+    }
+
     /// Speed (m/s) of the fastest wave in material of the given current `density` (kg/m3).
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T;
 

@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::linear_elastic::hooke_strain_at;
 use super::{ConstitutiveLaw, Moduli};
 use crate::scalar::Scalar;
 use crate::tensor::{Spectral, determinant, symmetric};
@@ -109,6 +110,18 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NeoHookean<T> {
         let squared = self.stretches_under(&spectral.values)?;
         let stretch = spectral.with_values(&squared.map(|b| b.sqrt()));
         Some(DeformationGradient(stretch))
+    }
+
+    #[inline]
+    fn strain_for(
+        &self,
+        change: &SMatrix<T, D, D>,
+        density: T,
+        stress: &SMatrix<T, D, D>,
+        state: &Self::State,
+    ) -> Option<SMatrix<T, D, D>> {
+        let speed = self.wave_speed(density, stress, state);
+        hooke_strain_at(&self.moduli, change, density * speed * speed)
     }
 
     /// From `J d sigma/dJ` along the most stretched axis. Its squared stretch is the largest row sum of `F F^T` (Gershgorin):

@@ -148,6 +148,25 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NewtonianFluid<T> {
         (isotropic && borne && base > T::zero()).then(|| VolumeRatio((-base.ln() / self.gamma).exp()))
     }
 
+    #[inline]
+    fn strain_for(
+        &self,
+        change: &SMatrix<T, D, D>,
+        _density: T,
+        _stress: &SMatrix<T, D, D>,
+        state: &Self::State,
+    ) -> Option<SMatrix<T, D, D>> {
+        if self.is_separated(state) {
+            return None;
+        }
+        let modulus = self.bulk_modulus * (-self.gamma * state.0.ln()).exp();
+        let count = T::count(D);
+        // The pressure alone follows from the state.
+        Some(SMatrix::from_diagonal_element(
+            change.trace() / (count * count * modulus),
+        ))
+    }
+
     /// `rho c^2 = K J^-gamma`; of separated fluid what it will be on contact.
     fn wave_speed(&self, density: T, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         let modulus = if self.is_separated(state) {

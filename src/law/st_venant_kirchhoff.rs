@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 
-use super::linear_elastic::hooke;
+use super::linear_elastic::{hooke, hooke_strain_at};
 use super::{ConstitutiveLaw, DeformationGradient, Moduli};
 use crate::scalar::Scalar;
 use crate::tensor::determinant;
@@ -55,6 +55,18 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for StVenantKirchhoff<T> {
     fn update(&self, increment: &SMatrix<T, D, D>, stress: &mut SMatrix<T, D, D>, state: &mut Self::State) {
         state.0 += increment * state.0;
         *stress = self.stress(&state.0);
+    }
+
+    #[inline]
+    fn strain_for(
+        &self,
+        change: &SMatrix<T, D, D>,
+        density: T,
+        stress: &SMatrix<T, D, D>,
+        state: &Self::State,
+    ) -> Option<SMatrix<T, D, D>> {
+        let speed = self.wave_speed(density, stress, state);
+        hooke_strain_at(&self.moduli, change, density * speed * speed)
     }
 
     /// From `J d sigma/dJ = (lambda + 2 mu) l^4 / J + sigma` for the stretch `l` along an axis. Where the stretches lie

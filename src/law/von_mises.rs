@@ -4,6 +4,7 @@ use nalgebra::{SMatrix, Vector3};
 
 use super::constant::{not_negative, positive};
 use super::elastic_stretch::{ElasticStretch, stored_energy, wave_modulus};
+use super::linear_elastic::hooke_strain_at;
 use super::{ConstitutiveLaw, Moduli};
 use crate::error::SetupError;
 use crate::scalar::Scalar;
@@ -125,6 +126,18 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for VonMises<T> {
         };
         let slack = self.yield_stress * T::default_epsilon().sqrt();
         (self.yield_function(&state) <= slack).then_some(state)
+    }
+
+    #[inline]
+    fn strain_for(
+        &self,
+        change: &SMatrix<T, D, D>,
+        density: T,
+        stress: &SMatrix<T, D, D>,
+        state: &Self::State,
+    ) -> Option<SMatrix<T, D, D>> {
+        let speed = self.wave_speed(density, stress, state);
+        hooke_strain_at(&self.moduli, change, density * speed * speed)
     }
 
     /// That of elastic waves, which plastic ones never outrun.

@@ -140,6 +140,22 @@ macro_rules! each_law {
                 }
             }
 
+            fn strain_for(
+                &self,
+                change: &SMatrix<T, D, D>,
+                density: T,
+                stress: &SMatrix<T, D, D>,
+                state: &Self::State,
+            ) -> Option<SMatrix<T, D, D>> {
+                match (self, state) {
+                    $((Self::$law(law), History::$history(own)) => {
+                        law.strain_for(change, density, stress, own)
+                    })+
+                    // Nothing has happened to it yet.
+                    _ => None,
+                }
+            }
+
             fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
                 match (self, state) {
                     $((Self::$law(law), History::$history(own)) => law.wave_speed(density, stress, own),)+

@@ -11,6 +11,7 @@ mod invariance;
 mod rates;
 mod spectral;
 mod start;
+mod strain_for;
 mod strength;
 mod von_mises;
 
