@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{AxisMasses, Lattice};
+use super::{AxisMasses, Lattice, Penalty};
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
 use crate::scalar::Scalar;
@@ -15,14 +15,19 @@ const MOST_ITERATIONS: usize = 200;
 /// The preconditioner is $S K S$: $K$ the Kronecker product of the axes' mass matrices ([`AxisMasses`]), $S$ diagonal and such
 /// that the product has the diagonal of the matrix. Where material fills the grid evenly it is nearly the inverse; elsewhere $S$
 /// takes in how much of it a DOF sees (Loli, Sangalli & Tani 2022, "Easy and efficient preconditioning of the isogeometric
-/// mass matrix"). The start is the lumped solution, exact for rigid translations, and at the end each component that
+/// mass matrix"). Where a [`Penalty`] ties DOFs, what is smooth and what is not weigh the other way round, and the diagonal alone
+/// takes half the iterations. The start is the lumped solution, exact for rigid translations, and at the end each component that
 /// nothing holds is shifted so that the sum of the residual vanishes: momentum is kept to round-off whatever the tolerance.
 #[derive(Clone, Debug)]
 pub struct ConjugateGradients<T, const D: usize> {
     axes: AxisMasses<T, D>,
-    /// Inverse of `S`; zero for DOFs that have no neighbours, which the start solves for.
+    /// Inverse of `S`; zero for DOFs that are tied, and for those that have no neighbours, which the start solves for.
     scale: Vec<T>,
     sums: Vec<T>,
+    /// Of matrix and penalty.
+    diagonal: Vec<T>,
+    /// One over it for DOFs that the penalty ties; zero for others.
+    tied: Vec<T>,
     /// Whether a DOF's component is solved for: one or zero.
     free: [Vec<T>; D],
     solution: [Vec<T>; D],
@@ -51,6 +56,8 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
             axes,
             scale: numbers(),
             sums: numbers(),
+            diagonal: numbers(),
+            tied: numbers(),
             free: vectors(),
             solution: vectors(),
             residual: vectors(),
@@ -63,7 +70,7 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
 
     /// Bytes allocated.
     pub fn bytes(&self) -> usize {
-        self.axes.bytes() + size_of::<T>() * (3 + 4 * D) * self.work.len()
+        self.axes.bytes() + size_of::<T>() * (5 + 4 * D) * self.work.len()
     }
 
     /// Sum of all entries of the matrix.
@@ -76,27 +83,26 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
         self.iterations
     }
 
-    /// Takes in a matrix, whose rows that are `weak` are lumped first ([`Lattice::lump_weak`]).
-    pub fn prepare(&mut self, matrix: &mut Lattice<T>, weak: Option<T>) {
+    /// Takes in a matrix and a penalty to be added to it.
+    pub fn prepare(&mut self, matrix: &Lattice<T>, penalty: &Penalty<T, D>) {
         matrix.row_sums(&mut self.sums);
-        if let Some(least) = weak {
-            matrix.lump_weak(least, &self.sums);
-        }
-        let diagonal = matrix.diagonal();
-        let largest = diagonal.iter().fold(T::zero(), |m, &x| m.max(x.abs()));
+        self.diagonal.copy_from_slice(matrix.diagonal());
+        penalty.add_diagonal(&mut self.diagonal);
+        let largest = self.diagonal.iter().fold(T::zero(), |m, &x| m.max(x.abs()));
         let negligible = largest * T::default_epsilon() * T::default_epsilon();
         let rounding = T::default_epsilon() * T::lit(64.0);
-        for (i, (scale, sum)) in self.scale.iter_mut().zip(&mut self.sums).enumerate() {
-            let mass = diagonal[i];
+        for (i, &mass) in self.diagonal.iter().enumerate() {
             if mass.abs() <= negligible {
-                *sum = T::zero();
+                self.sums[i] = T::zero();
             }
-            let coupled = mass > negligible && (*sum - mass).abs() > mass * rounding;
-            *scale = if coupled {
+            let coupled = mass > negligible && (self.sums[i] - mass).abs() > mass * rounding;
+            let tied = coupled && mass > matrix.diagonal()[i];
+            self.scale[i] = if coupled && !tied {
                 (self.axes.diagonal(i) / mass).sqrt()
             } else {
                 T::zero()
             };
+            self.tied[i] = if tied { T::one() / mass } else { T::zero() };
         }
         self.release();
     }
@@ -115,16 +121,22 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
         self.free[axis][dof] = T::zero();
     }
 
-    /// Replaces `right` by the solution of `matrix x = right`. DOFs without mass get zero.
-    pub fn solve(&mut self, matrix: &Lattice<T>, right: &mut [SVector<T, D>]) {
+    /// Replaces `right` by the solution of `(matrix + penalty) x = right`. DOFs without mass get zero.
+    pub fn solve(&mut self, matrix: &Lattice<T>, penalty: &Penalty<T, D>, right: &mut [SVector<T, D>]) {
         self.iterations = 0;
         for axis in 0..D {
-            self.solve_component(matrix, right, axis);
+            self.solve_component(matrix, penalty, right, axis);
         }
     }
 
-    fn solve_component(&mut self, matrix: &Lattice<T>, right: &mut [SVector<T, D>], axis: usize) {
-        let aim = self.start(matrix, right, axis);
+    fn solve_component(
+        &mut self,
+        matrix: &Lattice<T>,
+        penalty: &Penalty<T, D>,
+        right: &mut [SVector<T, D>],
+        axis: usize,
+    ) {
+        let aim = self.start(matrix, penalty, right, axis);
         let mut size = self.precondition(axis);
         self.direction[axis].copy_from_slice(&self.work);
         for iteration in 0..MOST_ITERATIONS {
@@ -133,9 +145,11 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
             }
             self.iterations = self.iterations.max(iteration + 1);
             matrix.multiply(&self.direction[axis], &mut self.work);
+            penalty.add_product(&self.direction[axis], &mut self.work);
             let curvature = dot(&self.direction[axis], &self.work);
-            // A fitted density may be negative somewhere; what is found so far is then the best there is.
-            if curvature <= T::zero() {
+            // A fitted density may be negative somewhere, and what few particles see need not determine all functions; what is
+            // found so far is then the best there is.
+            if curvature <= self.negligible_curvature(axis) {
                 break;
             }
             let step = size / curvature;
@@ -156,31 +170,44 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
         } else {
             self.shift(axis)
         };
-        let solution = self.solution[axis].iter().zip(&self.scale);
-        for (right, (&x, &scale)) in right.iter_mut().zip(solution) {
-            right[axis] = if scale > T::zero() { x + shift } else { x };
+        for (i, right) in right.iter_mut().enumerate() {
+            let x = self.solution[axis][i];
+            right[axis] = if self.is_coupled(i) { x + shift } else { x };
         }
     }
 
-    /// Lumped solution and its residual; returns the square below which the preconditioned residual is to fall.
-    fn start(&mut self, matrix: &Lattice<T>, right: &[SVector<T, D>], axis: usize) -> T {
+    /// First guess and its residual; returns the square below which the preconditioned residual is to fall.
+    ///
+    /// The guess is the lumped solution, and of tied DOFs, whose own mass may be next to nothing, the translation of the whole and
+    /// what it leaves over the diagonal.
+    fn start(
+        &mut self,
+        matrix: &Lattice<T>,
+        penalty: &Penalty<T, D>,
+        right: &[SVector<T, D>],
+        axis: usize,
+    ) -> T {
+        let translation = self.translation(right, axis);
         let solution = &mut self.solution[axis];
         let mut scale = T::zero();
         for (i, x) in solution.iter_mut().enumerate() {
-            let (free, value) = (self.free[axis][i] > T::zero(), right[i][axis]);
+            let (free, value, sum) = (self.free[axis][i] > T::zero(), right[i][axis], self.sums[i]);
             *x = if !free {
                 value
-            } else if self.sums[i] != T::zero() {
-                value / self.sums[i]
+            } else if self.tied[i] > T::zero() {
+                translation + (value - sum * translation) * self.tied[i]
+            } else if sum != T::zero() {
+                value / sum
             } else {
                 T::zero()
             };
-            scale += (*x * *x * self.sums[i]).abs();
+            scale += (*x * *x * sum).abs();
         }
         matrix.multiply(solution, &mut self.work);
+        penalty.add_product(solution, &mut self.work);
         let residual = self.residual[axis].iter_mut().zip(&self.work);
         for (i, (r, &product)) in residual.enumerate() {
-            let coupled = self.scale[i] > T::zero();
+            let coupled = self.scale[i] > T::zero() || self.tied[i] > T::zero();
             *r = if coupled {
                 (right[i][axis] - product) * self.free[axis][i]
             } else {
@@ -192,6 +219,34 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
         scale * tolerance * tolerance
     }
 
+    /// Curvature along the direction that is round-off.
+    fn negligible_curvature(&self, axis: usize) -> T {
+        let direction = &self.direction[axis];
+        let largest = self.diagonal.iter().zip(direction);
+        let sum = largest.fold(T::zero(), |sum, (&d, &p)| sum + d * p * p);
+        sum * T::default_epsilon()
+    }
+
+    /// Whether a DOF has neighbours to be solved for with it.
+    #[inline(always)]
+    fn is_coupled(&self, i: usize) -> bool {
+        self.scale[i] > T::zero() || self.tied[i] > T::zero()
+    }
+
+    /// Velocity of the whole, but for what is held.
+    fn translation(&self, right: &[SVector<T, D>], axis: usize) -> T {
+        let (mut momentum, mut mass) = (T::zero(), T::zero());
+        for ((right, &sum), &free) in right.iter().zip(&self.sums).zip(&self.free[axis]) {
+            momentum += right[axis] * free;
+            mass += sum * free;
+        }
+        if mass > T::zero() {
+            momentum / mass
+        } else {
+            T::zero()
+        }
+    }
+
     /// Preconditioned residual, left in `work`; returns its product with the residual.
     fn precondition(&mut self, axis: usize) -> T {
         let (residual, work) = (&self.residual[axis], &mut self.work);
@@ -199,9 +254,9 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
             *w = r * scale;
         }
         self.axes.solve(work);
-        let factors = self.scale.iter().zip(&self.free[axis]);
-        for (w, (&scale, &free)) in work.iter_mut().zip(factors) {
-            *w *= scale * free;
+        let factors = self.scale.iter().zip(&self.tied).zip(&self.free[axis]);
+        for ((w, &r), ((&scale, &tied), &free)) in work.iter_mut().zip(residual).zip(factors) {
+            *w = (*w * scale + r * tied) * free;
         }
         dot(residual, work)
     }
@@ -210,7 +265,7 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
     fn shift(&self, axis: usize) -> T {
         let (mut left, mut mass) = (T::zero(), T::zero());
         for (i, &r) in self.residual[axis].iter().enumerate() {
-            if self.scale[i] > T::zero() {
+            if self.is_coupled(i) {
                 left += r;
                 mass += self.sums[i];
             }
@@ -266,7 +321,23 @@ mod tests {
         matrix
     }
 
-    fn dense(matrix: &Lattice<f64>) -> DMatrix<f64> {
+    /// Across all faces between cells whose middles are kept, of which some are partly filled.
+    fn ties(grid: &Grid<f64, 2>, keep: impl Fn(&SVector<f64, 2>) -> bool) -> Penalty<f64, 2> {
+        let mut penalty = Penalty::new(&BASIS, grid);
+        let cells = grid.cells().map(|n| n as u32);
+        let middle = |cell: [u32; 2]| keep(&grid.centre(&cell));
+        for (i, j) in (0..cells[0]).flat_map(|i| (0..cells[1]).map(move |j| (i, j))) {
+            if i + 1 < cells[0] && middle([i, j]) {
+                penalty.add_face(grid, &[i, j], 0, 1e-3 * grid.cell_volume());
+            }
+            if j + 1 < cells[1] && middle([i, j]) {
+                penalty.add_face(grid, &[i, j], 1, 1e-3 * grid.cell_volume());
+            }
+        }
+        penalty
+    }
+
+    fn dense(matrix: &Lattice<f64>, penalty: &Penalty<f64, 2>) -> DMatrix<f64> {
         let n = matrix.order();
         let mut dense = DMatrix::zeros(n, n);
         let mut unit = vec![0.0; n];
@@ -274,6 +345,7 @@ mod tests {
             unit[i] = 1.0;
             let mut column = vec![0.0; n];
             matrix.multiply(&unit, &mut column);
+            penalty.add_product(&unit, &mut column);
             dense.set_column(i, &DVector::from_vec(column));
             unit[i] = 0.0;
         }
@@ -287,10 +359,11 @@ mod tests {
     #[test]
     fn it_solves_what_a_dense_factorisation_solves_also_for_a_body_that_fills_little_and_is_held() {
         let grid = grid(9);
-        let mut matrix = matrix(&grid, |x| (x[0] - 0.1).hypot(x[1] - 0.4) < 0.37);
+        let matrix = matrix(&grid, |x| (x[0] - 0.1).hypot(x[1] - 0.4) < 0.37);
         let mut gradients = ConjugateGradients::new(&BASIS, &grid);
-        gradients.prepare(&mut matrix, Some(0.09));
-        let mut full = dense(&matrix);
+        let penalty = ties(&grid, |x| (x[0] - 0.1).hypot(x[1] - 0.4) < 0.37);
+        gradients.prepare(&matrix, &penalty);
+        let mut full = dense(&matrix, &penalty);
         let n = matrix.order();
         let mass = matrix.diagonal().to_vec();
         let mut right: Vec<_> = (0..n).map(|i| rough(i) * mass[i]).collect();
@@ -313,7 +386,7 @@ mod tests {
         }
         let solution = full.lu().solve(&known).unwrap();
         exact.extend(solution.iter().copied());
-        gradients.solve(&matrix, &mut right);
+        gradients.solve(&matrix, &penalty, &mut right);
         for i in 0..n {
             assert!(
                 (right[i][0] - exact[i]).abs() < 1e-9,
@@ -328,21 +401,22 @@ mod tests {
     #[test]
     fn a_translation_needs_no_iteration_and_the_sum_is_kept_to_round_off() {
         let grid = grid(8);
-        let mut matrix = matrix(&grid, |x| x[0] + x[1] < 1.1);
+        let matrix = matrix(&grid, |x| x[0] + x[1] < 1.1);
         let mut gradients = ConjugateGradients::new(&BASIS, &grid);
-        gradients.prepare(&mut matrix, Some(0.09));
+        let penalty = ties(&grid, |x| x[0] + x[1] < 1.1);
+        gradients.prepare(&matrix, &penalty);
         let n = matrix.order();
         let mut sums = vec![0.0; n];
         matrix.row_sums(&mut sums);
         let mut x: Vec<_> = sums.iter().map(|&m| vector![3.0, -0.5] * m).collect();
-        gradients.solve(&matrix, &mut x);
+        gradients.solve(&matrix, &penalty, &mut x);
         assert_eq!(gradients.iterations(), 0);
         for i in (0..n).filter(|&i| sums[i] > 0.0) {
             assert!((x[i] - vector![3.0, -0.5]).norm() < 1e-14);
         }
         let mut x: Vec<_> = (0..n).map(|i| rough(i) * sums[i]).collect();
         let before: SVector<f64, 2> = x.iter().sum();
-        gradients.solve(&matrix, &mut x);
+        gradients.solve(&matrix, &penalty, &mut x);
         let after: SVector<f64, 2> = x.iter().zip(&sums).map(|(x, &m)| x * m).sum();
         assert!((after - before).norm() < 1e-13, "{after} {before}");
     }
@@ -351,11 +425,12 @@ mod tests {
     fn iterations_do_not_grow_with_the_grid() {
         for cells in [8, 40] {
             let grid = grid(cells);
-            let mut matrix = matrix(&grid, |_| true);
+            let matrix = matrix(&grid, |_| true);
             let mut gradients = ConjugateGradients::new(&BASIS, &grid);
-            gradients.prepare(&mut matrix, None);
+            let penalty = Penalty::none();
+            gradients.prepare(&matrix, &penalty);
             let mut x: Vec<_> = (0..matrix.order()).map(rough).collect();
-            gradients.solve(&matrix, &mut x);
+            gradients.solve(&matrix, &penalty, &mut x);
             assert!(
                 (5..60).contains(&gradients.iterations()),
                 "{}",

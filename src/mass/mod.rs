@@ -3,13 +3,16 @@
 mod axes;
 mod banded;
 mod gradients;
+mod jumps;
 mod lattice;
+mod penalty;
 
 pub use axes::AxisMasses;
 pub use banded::Banded;
 pub(crate) use banded::banded_row;
 pub use gradients::ConjugateGradients;
 pub use lattice::Lattice;
+pub use penalty::Penalty;
 
 /// Which mass turns the DOFs' momentum into their velocity. The acceleration always divides by the lumped
 /// mass of the particles (journal section 5.4).

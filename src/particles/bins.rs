@@ -157,6 +157,36 @@ impl<const D: usize> Bins<D> {
             .or_else(|| self.occupied.binary_search(&(cell as u32)).ok())
     }
 
+    /// Calls `f(axis, above, place)` for the occupied cells that share a face with the one at `place` in the list of the
+    /// occupied: above or below it along an axis, and their own places.
+    #[inline(always)]
+    pub fn for_each_neighbour<T: Scalar>(
+        &self,
+        grid: &Grid<T, D>,
+        place: usize,
+        mut f: impl FnMut(usize, bool, usize),
+    ) {
+        let number = self.occupied[place] as usize;
+        let cell = grid.cell(number);
+        let window = grid.window();
+        let (first, cells) = (window.first(), window.shape());
+        let mut stride = 1;
+        for axis in 0..D {
+            let place_on_axis = (cell[axis] - first[axis]) as usize;
+            if place_on_axis > 0
+                && let Some(other) = self.place_of(number - stride, place)
+            {
+                f(axis, false, other);
+            }
+            if place_on_axis + 1 < cells[axis]
+                && let Some(other) = self.place_of(number + stride, place)
+            {
+                f(axis, true, other);
+            }
+            stride *= cells[axis];
+        }
+    }
+
     /// Bytes allocated: per particle its cell and its place in the lists, per cell the start of its list and its place
     /// among the occupied.
     pub fn bytes(&self) -> usize {

@@ -163,7 +163,7 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
         for node in &self.nodes {
             let value = polynomial(&node.psi, coefficients);
             let position = patch.position(&node.s);
-            sink(&Point { cell, position }, value.scaled(volume * node.share));
+            sink(&Point::fixed(cell, position), value.scaled(volume * node.share));
         }
     }
 
@@ -180,7 +180,7 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
         for node in &self.nodes {
             let position = patch.position(&node.s);
             let value = polynomial(&taylor_functions(&frame.local(&position)), coefficients);
-            sink(&Point { cell, position }, value.scaled(volume * node.share));
+            sink(&Point::fixed(cell, position), value.scaled(volume * node.share));
         }
     }
 }

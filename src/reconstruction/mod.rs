@@ -110,6 +110,32 @@ pub struct Point<T, const D: usize> {
     pub cell: Cell<D>,
     /// Position (m).
     pub position: SVector<T, D>,
+    /// Whether it moves with the particles. There the basis gives gradients made for that
+    /// ([`crate::basis::BasisFamily::for_each`]), elsewhere those for points that stand still.
+    pub moves: bool,
+}
+
+impl<T, const D: usize> Point<T, D> {
+    /// One that stands still.
+    #[inline(always)]
+    pub fn fixed(cell: Cell<D>, position: SVector<T, D>) -> Self {
+        Self {
+            cell,
+            position,
+            moves: false,
+        }
+    }
+}
+
+/// How far material fills a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filling {
+    /// It does, as far as its functions can tell.
+    Full,
+    /// It ends within; its particles still determine a fit.
+    Part,
+    /// It ends within, and they do not.
+    Few,
 }
 
 /// Turns particle data into quadrature points with weighted values.
@@ -120,10 +146,6 @@ pub struct Point<T, const D: usize> {
 pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
     /// Whether [`Reconstruction::integrate`] streams the particles.
     const FIELDS_AT_PARTICLES: bool;
-
-    /// Whether the points of [`Reconstruction::integrate`] move with the particles. There the basis gives gradients made for
-    /// that ([`crate::basis::BasisFamily::for_each`]), elsewhere those for points that stand still.
-    const FIELDS_MOVE: bool = Self::FIELDS_AT_PARTICLES;
 
     /// Whether [`Reconstruction::integrate_conserved`] streams the particles. The mass of the DOFs is then the
     /// sum over the particles, lumped unless [`Reconstruction::PARTICLE_MATRIX`].
@@ -224,8 +246,8 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
 
     /// Moves the particles' `values` towards what the reconstruction sees of them; `weights` (masses) make the fit keep
     /// the weighted sum. `crossed` says for each occupied cell which part of it a wave crosses in this step: the measure of time
-    /// for a relaxation. The stepper calls it for the stress, unweighted, right after the force is assembled, and for
-    /// the velocity, weighted, before it is mapped to the DOFs.
+    /// for a relaxation. The stepper calls it for the stress, unweighted, right after the force is assembled (a law with a state is
+    /// then strained towards the moved stress), and for the velocity, weighted, before it is mapped to the DOFs.
     fn relax<Q: Field<T>>(
         &mut self,
         _cloud: &Cloud<'_, T, D>,
@@ -233,6 +255,13 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         _crossed: &[T],
         _values: &mut [Q],
     ) {
+    }
+
+    /// How far the material fills the occupied cell at `place` in the list of those. Beyond one dimension the stepper ties the
+    /// functions of cells that are not full to those of the next ones ([`crate::mass::Penalty`]). Only asked where
+    /// [`Reconstruction::PARTICLE_MATRIX`].
+    fn filling(&self, _place: usize) -> Filling {
+        Filling::Full
     }
 
     /// Cells that hold particles but, at the last [`Reconstruction::prepare`], could not be fitted with

@@ -27,6 +27,7 @@ impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
             let point = Point {
                 cell: *cloud.bins.cell_of(p),
                 position: *position,
+                moves: true,
             };
             sink(&point, value(p).scaled(cloud.volumes[p]));
         }
@@ -43,6 +44,7 @@ impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
             let point = Point {
                 cell: *cloud.bins.cell_of(p),
                 position: *position,
+                moves: true,
             };
             sink(&point, amount(p));
         }

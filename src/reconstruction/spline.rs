@@ -294,7 +294,7 @@ impl<T: Scalar> CubicSpline<T> {
                     }
                     let value: Q = self.evaluate(i, x);
                     let position = SVector::from([x]);
-                    sink(&Point { cell, position }, value.scaled(weight * half));
+                    sink(&Point::fixed(cell, position), value.scaled(weight * half));
                 }
             }
         }

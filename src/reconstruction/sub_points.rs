@@ -17,7 +17,7 @@ use crate::scalar::Scalar;
 ///   grows and shrinks with the volume and does not turn or shear.
 /// * **Sub-points.** The midpoints of `S` equal parts of the box along each axis, so that one sub-point is the particle, to the
 ///   bit [`Shepard`]. The field is constant over the domain.
-/// * **Gradients.** The family's gradients for moving points ([`Reconstruction::FIELDS_MOVE`]), since sub-points cross cell edges.
+/// * **Gradients.** The family's gradients for moving points ([`Point::moves`]), since sub-points cross cell edges.
 /// * **Where there is no material.** A sub-point outside the grid (beyond a wall), or in a cell that holds no particle, is drawn
 ///   to the nearest point of its particle's cell. The weight stays, and no force is put on a DOF beyond the material,
 ///   which has no mass to take it and would lose its momentum.
@@ -104,7 +104,6 @@ fn holds_particles<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: &Ce
 
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {
     const FIELDS_AT_PARTICLES: bool = false;
-    const FIELDS_MOVE: bool = true;
     const AMOUNTS_AT_PARTICLES: bool = true;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, T, D>) {}
@@ -135,7 +134,12 @@ impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {
                 } else {
                     settle(cloud, &own, &mut position)
                 };
-                sink(&Point { cell, position }, weighted);
+                let point = Point {
+                    cell,
+                    position,
+                    moves: true,
+                };
+                sink(&point, weighted);
                 if !advance(&mut k, self.per_axis) {
                     break;
                 }

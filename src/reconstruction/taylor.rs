@@ -652,7 +652,8 @@ mod tests {
             least = weighted.mass.min(least);
             sum += weighted.mass;
         };
-        assert!(taylor.integrate_hard(&cloud, 1, true, &density, add));
+        // Particles at one end do not determine all functions.
+        assert!(!taylor.integrate_hard(&cloud, 1, true, &density, add));
         // A hundredth of the mean at one of four points that weigh the same.
         assert!(
             (least - 0.6 / 400.0).abs() < 1e-15 && (sum - 0.6).abs() < 1e-15,

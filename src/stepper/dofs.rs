@@ -35,11 +35,13 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
         }
     }
 
-    /// `own_mass` is what divides the momenta, if it is not the lumped mass of the particles.
+    /// `own_mass` is what divides the momenta, if it is not the lumped mass of the particles; `ties` whether weak DOFs are
+    /// tied to others.
     pub(super) fn new<B: BasisFamily<T, D>>(
         basis: &B,
         grid: &Grid<T, D>,
         own_mass: Option<VelocityMass>,
+        ties: bool,
     ) -> Self {
         let count = basis.dof_count(grid);
         let lumped = if own_mass == Some(VelocityMass::Lumped) {
@@ -53,7 +55,9 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             velocity: vec![SVector::zeros(); count],
             lumped: vec![T::zero(); lumped],
             matrix: match own_mass {
-                Some(VelocityMass::Consistent | VelocityMass::Constrained) => MassMatrix::new(basis, grid),
+                Some(VelocityMass::Consistent | VelocityMass::Constrained) => {
+                    MassMatrix::new(basis, grid, ties)
+                }
                 Some(VelocityMass::Lumped) | None => MassMatrix::none(),
             },
         }

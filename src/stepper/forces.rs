@@ -14,7 +14,7 @@ use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Point, Reconstruction};
 use crate::scalar::Scalar;
 
-/// Share of its mass, along each axis, that a DOF's diagonal must hold to be solved for with its neighbours. The share is the mean value of
+/// In one dimension: share of its mass that a DOF's diagonal must hold to be solved for with its neighbours. The share is the mean value of
 /// its function over the particles: 2/3 in a full linear cell, nothing for a DOF that the first particle of a free end has
 /// just come to see. Such a DOF would have to carry that particle's whole acceleration, one over the function's value
 /// times as large, or round-off so magnified.
@@ -140,7 +140,8 @@ where
         }
     }
 
-    /// `m_i = sum_p m_p phi_i`, and `M_ij = sum_p m_p phi_i phi_j` where the reconstruction wants it, weak DOFs lumped.
+    /// `m_i = sum_p m_p phi_i`, and `M_ij = sum_p m_p phi_i phi_j` where the reconstruction wants it, weak DOFs lumped or, beyond one
+    /// dimension, tied.
     pub(super) fn lump_mass(&mut self) {
         if R::PARTICLE_MATRIX {
             self.assemble_particle_matrix();
@@ -194,7 +195,10 @@ where
             pairs.add(mass);
         }
         pairs.flush(matrix);
-        matrix.complete(Some(T::lit(WEAK.powi(D as i32))));
+        if D > 1 {
+            self.tie_partly_filled_cells();
+        }
+        self.dofs.matrix.complete(Some(T::lit(WEAK)));
     }
 
     fn add_tractions(&mut self, forcing: &Forcing<T, D>) {
@@ -231,7 +235,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
         let add =
             |point: &Point<T, D>, weighted: SMatrix<T, D, D>, force: &mut [SVector<T, D>], first: usize| {
                 let sink = |i: usize, _, gradient| force[i - first] -= weighted * gradient;
-                if R::FIELDS_MOVE {
+                if point.moves {
                     basis.for_each(cloud.grid, &point.cell, &point.position, sink);
                 } else {
                     basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, sink);

@@ -3,8 +3,8 @@
 use super::Dofs;
 use super::acceleration::Walls;
 use crate::basis::BasisFamily;
-use crate::grid::Grid;
-use crate::mass::{Banded, ConjugateGradients, Lattice, VelocityMass};
+use crate::grid::{Cell, Grid};
+use crate::mass::{Banded, ConjugateGradients, Lattice, Penalty, VelocityMass};
 use crate::scalar::Scalar;
 
 /// What is solved for, in place.
@@ -23,6 +23,7 @@ pub(super) struct MassMatrix<T, const D: usize> {
     band: Banded<T>,
     factor: Banded<T>,
     lattice: Lattice<T>,
+    penalty: Penalty<T, D>,
     gradients: ConjugateGradients<T, D>,
 }
 
@@ -33,12 +34,13 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
             band: Banded::zeros(0, 0),
             factor: Banded::zeros(0, 0),
             lattice: Lattice::none(),
+            penalty: Penalty::none(),
             gradients: ConjugateGradients::none(),
         }
     }
 
-    /// Of the DOFs of `basis`.
-    pub(super) fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>) -> Self {
+    /// Of the DOFs of `basis`, which may be tied where material ends.
+    pub(super) fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>, ties: bool) -> Self {
         let none = Self::none();
         if D == 1 {
             let band = Banded::zeros(basis.dof_count(grid), basis.half_band(grid));
@@ -50,6 +52,11 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
         } else {
             Self {
                 lattice: Lattice::zeros(basis.dofs(grid), basis.degree()),
+                penalty: if ties {
+                    Penalty::new(basis, grid)
+                } else {
+                    none.penalty
+                },
                 gradients: ConjugateGradients::new(basis, grid),
                 ..none
             }
@@ -57,7 +64,10 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
     }
 
     pub(super) fn bytes(&self) -> usize {
-        size_of::<T>() * 2 * self.band.len() + self.lattice.bytes() + self.gradients.bytes()
+        size_of::<T>() * 2 * self.band.len()
+            + self.lattice.bytes()
+            + self.penalty.bytes()
+            + self.gradients.bytes()
     }
 
     /// The band of one dimension, to be filled.
@@ -68,6 +78,7 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
     pub(super) fn clear(&mut self) {
         self.band.clear();
         self.lattice.clear();
+        self.penalty.clear();
     }
 
     /// Adds to the entry `(i, j)` of the lower half; the upper one, `i < j`, is the same and left out.
@@ -80,10 +91,21 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
         }
     }
 
-    /// Takes the sums as complete. Rows whose diagonal holds less than the share `weak` of their sum are lumped, if told so.
+    /// Ties the functions on both sides of the face above `cell` along `axis`, beyond one dimension.
+    pub(super) fn tie(&mut self, grid: &Grid<T, D>, cell: &Cell<D>, axis: usize, mass: T) {
+        self.penalty.add_face(grid, cell, axis, mass);
+    }
+
+    /// Lumps the row of a DOF, beyond one dimension.
+    pub(super) fn lump(&mut self, dof: usize) {
+        self.lattice.lump(dof);
+    }
+
+    /// Takes the sums as complete. In one dimension rows whose diagonal holds less than the share `weak` of their sum are
+    /// lumped, if told so.
     pub(super) fn complete(&mut self, weak: Option<T>) {
         if D > 1 {
-            self.gradients.prepare(&mut self.lattice, weak);
+            self.gradients.prepare(&self.lattice, &self.penalty);
         } else if let Some(least) = weak {
             self.band.lump_weak(least);
         }
@@ -157,7 +179,10 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             Unknown::Velocity => &mut self.velocity,
         };
         let MassMatrix {
-            lattice, gradients, ..
+            lattice,
+            penalty,
+            gradients,
+            ..
         } = &mut self.matrix;
         gradients.release();
         if mass == VelocityMass::Constrained {
@@ -166,6 +191,6 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
                 right[dof][axis] = pick(velocity, acceleration);
             });
         }
-        gradients.solve(lattice, right);
+        gradients.solve(lattice, penalty, right);
     }
 }

@@ -24,6 +24,7 @@ mod diagnostics;
 mod dofs;
 mod forces;
 mod forcing;
+mod ghost;
 mod lanes;
 mod liquid;
 mod matrix;
@@ -40,7 +41,7 @@ pub use diagnostics::{Conservation, Diagnostics, Energy};
 pub use forcing::{FaceCondition, Forcing, PoreCondition, SurfacePoint};
 pub use simulation::Simulation;
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
 use crate::basis::BasisFamily;
@@ -114,6 +115,8 @@ where
     strayed: bool,
     /// Part of each occupied cell that a wave crosses in this step; empty where nothing relaxes.
     crossed: Vec<T>,
+    /// Stresses as the relaxation would have them; empty but for laws that remember.
+    relaxed: Vec<SMatrix<T, D, D>>,
     /// What the particles of a cell add to their matrix.
     pairs: Pairs<T, D>,
     /// Force per mass of each particle; empty where there is none but the uniform one.
@@ -184,6 +187,11 @@ where
         let sums_matrix = D > 1 && !R::AMOUNTS_AT_PARTICLES && velocity_mass != VelocityMass::Lumped;
         let surface_count = surface.len();
         let crossed_count = if R::RELAXES { grid.cell_count() } else { 0 };
+        let relaxed_count = if R::RELAXES && size_of::<L::State>() > 0 {
+            particles.len()
+        } else {
+            0
+        };
         let spans = Spans::new(particles.len());
         let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
         let mut stepper = Self {
@@ -205,6 +213,7 @@ where
             spans,
             strayed: false,
             crossed: Vec::with_capacity(crossed_count),
+            relaxed: vec![SMatrix::zeros(); relaxed_count],
             pairs: Pairs::new(R::PARTICLE_MATRIX || sums_matrix),
             body_forces: Vec::new(),
             face_dofs: Vec::new(),
@@ -222,9 +231,9 @@ where
     fn allocate_dofs(&mut self) {
         let (basis, grid) = (&self.basis, &self.grid);
         let own_mass = (!R::AMOUNTS_AT_PARTICLES || R::PARTICLE_MATRIX).then_some(self.velocity_mass);
-        self.dofs = Dofs::new(basis, grid, own_mass);
+        self.dofs = Dofs::new(basis, grid, own_mass, R::PARTICLE_MATRIX);
         if P::FLOWS {
-            self.liquid = Dofs::new(basis, grid, own_mass);
+            self.liquid = Dofs::new(basis, grid, own_mass, R::PARTICLE_MATRIX);
             let count = basis.dof_count(grid);
             self.drag = vec![T::zero(); count];
             self.sums = vec![liquid::Sums::zero(); count];
@@ -446,6 +455,7 @@ where
             + self.spans.bytes()
             + self.pairs.bytes()
             + size_of::<T>() * self.crossed.capacity()
+            + size_of::<SMatrix<T, D, D>>() * self.relaxed.capacity()
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()
             + both * self.drag.len()
     }

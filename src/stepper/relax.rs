@@ -1,11 +1,17 @@
 //! The reconstruction's touch on the particles.
 
+use nalgebra::SMatrix;
+
 use super::Stepper;
 use crate::basis::BasisFamily;
 use crate::law::ConstitutiveLaw;
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Reconstruction};
 use crate::scalar::Scalar;
+use crate::tensor::determinant;
+
+/// Largest strain by which a relaxation moves a stress in a step.
+const MOST_STRAIN: f64 = 0.1;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
 where
@@ -27,14 +33,52 @@ where
             volumes: &particles.volume,
             cuts: &self.cuts,
         };
-        // The stress of a law that remembers follows from its state, or is bound to it: it must not be moved alone.
         if size_of::<L::State>() == 0 {
             self.reconstruction
                 .relax(&cloud, None, crossed, &mut particles.stress);
+        } else {
+            self.relaxed.copy_from_slice(&particles.stress);
+            self.reconstruction
+                .relax(&cloud, None, crossed, &mut self.relaxed);
         }
         let mass = Some(&particles.mass[..]);
         self.reconstruction
             .relax(&cloud, mass, crossed, &mut particles.velocity);
+        if size_of::<L::State>() > 0 {
+            self.strain_to_relaxed();
+        }
+    }
+
+    /// Moves the stress of a law that remembers, which follows from its state or is bound to it, by small strains: stress, state
+    /// and volume stay those of one material.
+    fn strain_to_relaxed(&mut self) {
+        let (law, particles) = (&self.law, &mut self.particles);
+        let large_strain = law.large_strain();
+        for (p, relaxed) in self.relaxed.iter().enumerate() {
+            let (stress, state, volume) = (
+                &mut particles.stress[p],
+                &mut particles.state[p],
+                &mut particles.volume[p],
+            );
+            let change = relaxed - *stress;
+            if change.iter().all(|x| x.is_zero()) {
+                continue;
+            }
+            let density = particles.mass[p] / *volume;
+            let Some(strain) = law.strain_for(&change, density, stress, state) else {
+                continue;
+            };
+            let ratio = determinant(&(SMatrix::identity() + strain));
+            // A stress that is off by its modulus is beyond what small strains mend.
+            let mends = strain.iter().all(|e| e.abs() < T::lit(MOST_STRAIN));
+            if !mends {
+                continue;
+            }
+            law.update(&strain, stress, state);
+            if large_strain {
+                *volume *= ratio;
+            }
+        }
     }
 
     /// Part of each occupied cell that a wave crosses in a step, at the cell's first particle.

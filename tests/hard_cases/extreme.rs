@@ -173,9 +173,9 @@ const DRAWN: [(Variant, f64, f64); 9] = [
     ((BSpline, TaylorLumped), 1.58e-2, 2.68e-2),
     ((DualDomain, TaylorConsistent), 2.37e-3, 1.91e-1),
     ((BSpline, TaylorConsistent), 4.24e-3, 1.66e-1),
-    ((Linear, Relaxed), 9.03e-2, 3.90e-2),
-    ((DualDomain, Relaxed), 3.53e-3, 2.45e-2),
-    ((BSpline, Relaxed), 1.84e-2, 6.24e-2),
+    ((Linear, Relaxed), 6.26e-4, 1.04e-2),
+    ((DualDomain, Relaxed), 4.93e-4, 2.06e-2),
+    ((BSpline, Relaxed), 5.09e-4, 7.20e-3),
 ];
 
 #[test]

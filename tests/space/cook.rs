@@ -70,17 +70,12 @@ fn the_error_of_the_rise_halves_with_the_cells() {
     check(52, [1.005, 1.007, 1.005]);
 }
 
-/// No particle crosses a cell here: it is the slanted sides. Measured: published TLS with linear functions leaves the grid at step 85,
-/// relaxed TLS with B-splines at step 898, both within their largest stable step.
+/// It stays within 3 %, on the soft side of particle sums with B-splines; what neighbours see otherwise than a cell itself creeps
+/// under the lasting load.
 #[test]
-fn fits_do_not_bear_slanted_free_sides() {
-    for (basis, kind, time) in [
-        (Basis::Linear, ReconstructionKind::Taylor, "time.end=100"),
-        (BASES[2], ReconstructionKind::RelaxedTaylor, "time.step=0.4"),
-    ] {
-        let scene = scene(Scene::builtin("cooks-membrane").unwrap(), &[time]);
-        let scene = scene.with_method(Method::new(basis, kind));
-        let error = watch::<2>(&scene, |_, _| {}).err();
-        assert!(error.is_some(), "{basis:?} {kind:?}");
+fn relaxed_taylor_bears_slanted_free_sides() {
+    for (basis, expected) in BASES.into_iter().zip([0.977, 0.973, 1.006]) {
+        let found = mean_rise(Method::new(basis, ReconstructionKind::RelaxedTaylor), 13);
+        assert!((found - expected).abs() < 5e-3, "{basis:?}: {found:.4}");
     }
 }

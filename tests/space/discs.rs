@@ -99,21 +99,20 @@ fn discs_meet_and_part_and_keep_momentum_and_energy() {
     }
 }
 
-/// As of a spinning disc: round free sides cut cells otherwise than relaxed TLS does. By 1.2 s linear functions gain 59 %, dual domain 41 % and
-/// B-splines 2 %.
+/// Cells that hold both bodies fit one polynomial through them. Measured: energy between 0.85 and 1.12 of the first with linear
+/// functions, 0.91 and 1.40 with dual domain, 0.89 and 1.04 with B-splines.
 #[test]
-fn relaxed_taylor_gains_energy_between_round_sides() {
-    let scene = scene(Scene::builtin("colliding-discs").unwrap(), &["time.end=1.2"]);
-    for basis in [BASES[0], BASES[1]] {
-        let method = Method::new(basis, ReconstructionKind::RelaxedTaylor);
-        let (mut start, mut last) = (f64::NAN, f64::NAN);
-        watch::<2>(&scene.clone().with_method(method), |time, simulation| {
-            last = simulation.energy().total();
-            if time == 0.0 {
-                start = last;
-            }
-        })
-        .unwrap();
-        assert!(last / start > 1.3, "{basis:?}: {}", last / start);
+fn relaxed_taylor_fits_one_polynomial_through_both_discs() {
+    for (basis, [lowest, highest]) in BASES.into_iter().zip([[0.8, 1.2], [0.85, 1.6], [0.85, 1.1]]) {
+        let found = impact(Method::new(basis, ReconstructionKind::RelaxedTaylor), 20);
+        assert!(found.momentum < 1e-13, "{found:?}");
+        assert!(
+            found.energy[0] > lowest && found.energy[1] < highest,
+            "{basis:?} {found:?}"
+        );
+        assert!(
+            found.energy[0] < 0.98 || found.energy[1] > 1.02,
+            "{basis:?} {found:?}"
+        );
     }
 }

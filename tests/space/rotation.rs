@@ -109,17 +109,38 @@ fn the_loss_is_not_the_time_step_s() {
     assert!((half / quarter - 1.0).abs() < 0.1, "{half} {quarter}");
 }
 
-/// A round side cuts cells otherwise than the boxes to which relaxed TLS cuts them: it gains energy, published TLS stops.
+/// Consistent mass, in the acceleration too, and a ghost penalty that vanishes on rotations: nothing of the angular momentum is lost.
+/// Measured: 2e-14 (4e-14 with 24 cells); energy from 0.9995 to 1.0001.
+fn check_relaxed(cells: usize) {
+    for basis in BASES {
+        let relaxed = spin(Method::new(basis, ReconstructionKind::RelaxedTaylor), cells, &[]);
+        assert_eq!(relaxed.ended, Ok(()), "{basis:?}");
+        assert!((relaxed.angular - 1.0).abs() < 1e-12, "{basis:?} {relaxed:?}");
+        assert!(relaxed.momentum < 1e-13, "{basis:?} {relaxed:?}");
+        assert!(
+            relaxed.energy[0] > 0.999 && relaxed.energy[1] < 1.001,
+            "{basis:?} {relaxed:?}"
+        );
+        assert!(relaxed.stretch < 2e-3, "{basis:?} {relaxed:?}");
+    }
+}
+
 #[test]
-fn fits_do_not_bear_a_round_free_side() {
+fn relaxed_taylor_keeps_the_angular_momentum_to_round_off() {
+    check_relaxed(12);
+}
+
+#[test]
+#[ignore = "20 s: cargo test --release relaxed_taylor_keeps_the_angular -- --ignored"]
+fn relaxed_taylor_keeps_the_angular_momentum_on_finer_grids() {
+    check_relaxed(24);
+}
+
+/// Published TLS fits over whole cells, also where the body ends within.
+#[test]
+fn published_taylor_does_not_bear_a_round_free_side() {
     for basis in BASES {
         let published = spin(Method::new(basis, ReconstructionKind::Taylor), 12, &[]);
         assert!(published.ended.is_err(), "{published:?}");
-        let relaxed = spin(
-            Method::new(basis, ReconstructionKind::RelaxedTaylor),
-            12,
-            &["time.end=2.0"],
-        );
-        assert!(relaxed.ended.is_err() || relaxed.energy[1] > 2.0, "{relaxed:?}");
     }
 }

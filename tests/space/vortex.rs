@@ -69,17 +69,17 @@ fn b_splines_are_of_second_order_on_a_free_ring() {
 
 #[test]
 fn relaxed_taylor_is_the_most_accurate_on_a_free_ring() {
-    check(&RING, LINEAR, RelaxedTaylor, &[(24, 3.62e-1)]);
-    check(&RING, DUAL_DOMAIN, RelaxedTaylor, &[(24, 2.99e-1)]);
-    check(&RING, BSPLINE, RelaxedTaylor, &[(24, 1.90e-1)]);
+    check(&RING, LINEAR, RelaxedTaylor, &[(24, 4.0e-1)]);
+    check(&RING, DUAL_DOMAIN, RelaxedTaylor, &[(24, 3.70e-1)]);
+    check(&RING, BSPLINE, RelaxedTaylor, &[(24, 3.36e-1)]);
 }
 
 #[test]
-#[ignore = "30 s: cargo test --release relaxed_taylor_is_of_first_order -- --ignored"]
-fn relaxed_taylor_is_of_first_order_on_a_free_ring() {
-    check(&RING, LINEAR, RelaxedTaylor, &[(48, 2.11e-1)]);
-    check(&RING, DUAL_DOMAIN, RelaxedTaylor, &[(48, 1.41e-1)]);
-    check(&RING, BSPLINE, RelaxedTaylor, &[(48, 9.17e-2)]);
+#[ignore = "90 s: cargo test --release relaxed_taylor_nears_second_order -- --ignored"]
+fn relaxed_taylor_nears_second_order_on_a_free_ring() {
+    check(&RING, LINEAR, RelaxedTaylor, &[(48, 2.06e-1), (96, 6.5e-2)]);
+    check(&RING, DUAL_DOMAIN, RelaxedTaylor, &[(48, 1.80e-1), (96, 5.66e-2)]);
+    check(&RING, BSPLINE, RelaxedTaylor, &[(48, 1.23e-1), (96, 3.30e-2)]);
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn published_taylor_needs_material_around() {
 fn fits_converge_within_a_block() {
     let kinds = [
         (Taylor, [2.26e-1, 1.37e-1, 1.28e-1]),
-        (RelaxedTaylor, [2.09e-1, 1.17e-1, 8.27e-2]),
+        (RelaxedTaylor, [1.44e-1, 1.04e-1, 7.83e-2]),
     ];
     for (kind, expected) in kinds {
         for (basis, expected) in [LINEAR, DUAL_DOMAIN, BSPLINE].into_iter().zip(expected) {
@@ -113,5 +113,5 @@ fn a_ring_in_a_block_is_no_better_with_particle_sums() {
     // So many particles, in spans, were once more than dual domain's windows held.
     check(&BLOCK, DUAL_DOMAIN, Shepard, &[(48, 4.33e-1)]);
     check(&BLOCK, BSPLINE, Shepard, &[(24, 1.03), (48, 2.73e-1)]);
-    check(&BLOCK, BSPLINE, RelaxedTaylor, &[(24, 2.15e-1)]);
+    check(&BLOCK, BSPLINE, RelaxedTaylor, &[(24, 2.01e-1)]);
 }

@@ -2,13 +2,11 @@
 
 use crate::field::Field;
 use crate::reconstruction::taylor::local;
-use crate::reconstruction::{Cloud, Patch};
+use crate::reconstruction::{Cloud, Filling, Patch};
 use crate::scalar::Scalar;
 use crate::taylor::{CellFit, Gram};
 
-/// Reach of the particles towards an open side, as a share of half the cell, from which on the cell counts as full there:
-/// particles beside a wall need not fill their cell to the last digit.
-const FULL: f64 = 0.9;
+use super::filling::{FULL, OpenSides, borders_on_nothing, is_full, reach};
 
 /// The fits of one occupied cell.
 #[derive(Clone, Debug)]
@@ -20,6 +18,9 @@ pub(super) struct RelaxedCell<T, const D: usize, const NB: usize> {
     pub(super) own: CellFit<T, NB>,
     /// With the particles of the neighbours; none where even they do not tell the functions apart.
     pub(super) wide: Option<CellFit<T, NB>>,
+    open: bool,
+    /// Beyond one dimension; always full in one, where weak DOFs are lumped.
+    pub(super) filling: Filling,
     /// Sums of the own particles, in the frame of the whole cell.
     gram: Gram<T, NB>,
 }
@@ -41,38 +42,29 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedCell<T, D, NB> {
             patch,
             own,
             wide: None,
+            open: false,
+            filling: Filling::Full,
             gram,
         }
     }
 
-    /// Cuts the cell on its `open` sides, beyond which there are no particles, to where its particles end: the outermost one and
-    /// half its size.
-    #[cold]
-    #[inline(never)]
-    fn end_where_particles_end(&mut self, cloud: &Cloud<'_, T, D>, open: &[[bool; 2]; D], tolerance: T) {
-        let particles = || {
-            cloud
-                .bins
-                .particles_in(cloud.grid.linear(&self.whole.cell))
-                .iter()
-        };
+    /// Cuts the cell on its `open` sides, beyond which there are no particles, to where its particles end.
+    fn end_where_particles_end(&mut self, cloud: &Cloud<'_, T, D>, open: &OpenSides<D>, tolerance: T) {
         let mut patch = self.whole;
         for (axis, sides) in open.iter().enumerate() {
-            let centre = patch.centre[axis];
             let half = patch.half[axis];
-            let ends = |sign: T| {
-                let reach = particles().map(|&p| {
-                    let p = p as usize;
-                    let size = side(cloud.volumes[p], D);
-                    (cloud.positions[p][axis] - centre) * sign + size / T::lit(2.0)
-                });
-                let reach = reach.fold(-half, T::max);
-                if reach < half * T::lit(FULL) { reach } else { half }
+            let ends = |above: bool| {
+                let reach = reach(cloud, &self.whole, axis, above);
+                let share = if sides[usize::from(above)] && reach < T::lit(FULL) {
+                    reach
+                } else {
+                    T::one()
+                };
+                half * share
             };
-            let low = if sides[0] { ends(-T::one()) } else { half };
-            let high = if sides[1] { ends(T::one()) } else { half };
+            let (low, high) = (ends(false), ends(true));
             if low + high > T::zero() {
-                patch.centre[axis] = centre + (high - low) / T::lit(2.0);
+                patch.centre[axis] += (high - low) / T::lit(2.0);
                 patch.half[axis] = (low + high) / T::lit(2.0);
                 patch.inverse_half[axis] = T::one() / patch.half[axis];
             }
@@ -82,6 +74,32 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedCell<T, D, NB> {
             self.own = CellFit::weighted(points, 0, tolerance);
             self.patch = patch;
         }
+    }
+
+    /// Takes in that there are no particles beyond the `open` sides.
+    #[cold]
+    #[inline(never)]
+    fn end_at(&mut self, cloud: &Cloud<'_, T, D>, open: &OpenSides<D>, tolerance: T) {
+        let borders_on_nothing = borders_on_nothing(cloud, &self.whole, open);
+        if D > 1 && borders_on_nothing {
+            self.open = !is_full(cloud, &self.whole);
+        } else {
+            self.end_where_particles_end(cloud, open, tolerance);
+        }
+        if D > 1 && (self.open || self.patch != self.whole) {
+            self.filling = if self.is_full() {
+                Filling::Part
+            } else {
+                Filling::Few
+            };
+        }
+    }
+
+    /// Whether material ends within it on any slant, beyond one dimension. Its particles are then the points of its force, and are
+    /// left as they are.
+    #[inline(always)]
+    pub(super) fn is_open(&self) -> bool {
+        self.open
     }
 
     /// Whether its own particles determine all functions.
@@ -107,15 +125,6 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedCell<T, D, NB> {
     }
 }
 
-/// Side of a cube of the given volume.
-fn side<T: Scalar>(volume: T, dimensions: usize) -> T {
-    match dimensions {
-        1 => volume,
-        2 => volume.sqrt(),
-        _ => volume.cbrt(),
-    }
-}
-
 /// Makes the wide fits.
 pub(super) fn join<T: Scalar, const D: usize, const NB: usize>(
     cells: &mut [RelaxedCell<T, D, NB>],
@@ -124,43 +133,16 @@ pub(super) fn join<T: Scalar, const D: usize, const NB: usize>(
 ) {
     for place in 0..cells.len() {
         let (mut gram, mut open) = (cells[place].gram, [[true; 2]; D]);
-        for_each_neighbour(cloud, place, |axis, above, other| {
-            gram.add_neighbour::<D>(&cells[other].gram, axis, above);
-            open[axis][usize::from(above)] = false;
-        });
+        cloud
+            .bins
+            .for_each_neighbour(cloud.grid, place, |axis, above, other| {
+                gram.add_neighbour::<D>(&cells[other].gram, axis, above);
+                open[axis][usize::from(above)] = false;
+            });
         let cell = &mut cells[place];
         cell.wide = CellFit::full::<D>(&gram, tolerance);
         if open != [[false; 2]; D] && cell.patch == cell.whole {
-            cell.end_where_particles_end(cloud, &open, tolerance);
+            cell.end_at(cloud, &open, tolerance);
         }
-    }
-}
-
-/// Calls `f(axis, above, place)` for the occupied cells that share a face with the one at `place` in the list of the
-/// occupied: above or below it along an axis.
-#[inline(always)]
-pub(super) fn for_each_neighbour<T: Scalar, const D: usize>(
-    cloud: &Cloud<'_, T, D>,
-    place: usize,
-    mut f: impl FnMut(usize, bool, usize),
-) {
-    let number = cloud.bins.occupied()[place] as usize;
-    let cell = cloud.grid.cell(number);
-    let window = cloud.grid.window();
-    let (first, cells) = (window.first(), window.shape());
-    let mut stride = 1;
-    for axis in 0..D {
-        let place_on_axis = (cell[axis] - first[axis]) as usize;
-        if place_on_axis > 0
-            && let Some(other) = cloud.bins.place_of(number - stride, place)
-        {
-            f(axis, false, other);
-        }
-        if place_on_axis + 1 < cells[axis]
-            && let Some(other) = cloud.bins.place_of(number + stride, place)
-        {
-            f(axis, true, other);
-        }
-        stride *= cells[axis];
     }
 }

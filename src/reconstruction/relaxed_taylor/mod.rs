@@ -1,12 +1,13 @@
 //! Relaxed Taylor least squares.
 
 mod cells;
+mod filling;
 
 use std::ops::Range;
 
 use super::gauss::{GaussRule, polynomial};
 use super::taylor::local;
-use super::{Cloud, Point, Reconstruction, Shepard};
+use super::{Cloud, Filling, Point, Reconstruction, Shepard};
 use crate::field::Field;
 use crate::scalar::Scalar;
 use crate::taylor::{CellFit, default_tolerance, shift_sums, taylor_functions};
@@ -29,16 +30,23 @@ pub struct Relaxation<T> {
 }
 
 impl<T: Scalar> Default for Relaxation<T> {
-    /// 3 and 0.8: larger ones towards the neighbours damp a linear basis less and make it gain sooner, see `docs/relaxed-tls.md`.
+    /// That of one dimension.
     fn default() -> Self {
-        Self {
-            own: T::lit(3.0),
-            neighbours: T::lit(0.8),
-        }
+        Self::in_dimensions(1)
     }
 }
 
 impl<T: Scalar> Relaxation<T> {
+    /// Along one axis 3 and 0.8: larger ones towards the neighbours damp a linear basis less and make it gain sooner. Beyond, 3
+    /// and 0.05: what neighbours see otherwise than a cell itself is relaxed without being strained, so a body under a lasting load
+    /// creeps, and there are more particles in a cell to keep its fit in bounds. See `docs/relaxed-tls.md`.
+    pub fn in_dimensions(count: usize) -> Self {
+        Self {
+            own: T::lit(3.0),
+            neighbours: T::lit(if count == 1 { 0.8 } else { 0.05 }),
+        }
+    }
+
     /// Shares of the difference to each fit that a step takes away, in which a wave crosses the part `crossed` of a cell.
     #[inline(always)]
     fn shares(&self, crossed: T) -> [T; 2] {
@@ -66,7 +74,12 @@ impl<T: Scalar> Relaxation<T> {
 ///
 /// The shares follow from [`Relaxation`] rates, so that a smaller time step changes nothing. A cell whose particles do not
 /// tell all functions apart takes the fit with its neighbours for the force too, if that one can. The
-/// stress of a law with a state of its own (a deformation, plastic history) is bound to that state and not relaxed.
+/// stress of a law with a state of its own (a deformation, plastic history) is moved by straining the state
+/// ([`ConstitutiveLaw::strain_for`](crate::law::ConstitutiveLaw::strain_for)).
+///
+/// In one dimension a cell ends where a body's surface cuts it. Beyond, where material ends within a cell on any slant, the particles
+/// themselves are the points of its force, nothing is relaxed there, and the stepper ties its functions to those of the next
+/// cells ([`crate::mass::Penalty`]).
 #[doc = include_str!("../../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {
@@ -85,7 +98,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         Self {
             rule: GaussRule::new(GaussRule::<T, D, NB>::points_for_degree(degree)),
             tolerance: default_tolerance(D),
-            relaxation: Relaxation::default(),
+            relaxation: Relaxation::in_dimensions(D),
             cells: Vec::new(),
             sums: Vec::new(),
             reduced: 0,
@@ -129,7 +142,9 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             }
         };
         add(place);
-        cells::for_each_neighbour(cloud, place, |_, _, other| add(other));
+        cloud
+            .bins
+            .for_each_neighbour(cloud.grid, place, |_, _, other| add(other));
         wide.coefficients_from_sums(sums)
     }
 
@@ -169,13 +184,15 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             let mut sums = self.summed::<Q>(place);
             let seen = fits.own_coefficients(cloud, cell, sums, |p| values[p]);
             let [mut slowest, mut fastest] = [crossed[place]; 2];
-            cells::for_each_neighbour(cloud, place, |axis, above, other| {
-                slowest = slowest.min(crossed[other]);
-                fastest = fastest.max(crossed[other]);
-                let mut theirs = self.summed::<Q>(other);
-                shift_sums::<T, D, NB, Q>(&mut theirs, axis, above);
-                (0..NB).for_each(|k| sums[k].add_scaled(T::one(), theirs[k]));
-            });
+            cloud
+                .bins
+                .for_each_neighbour(cloud.grid, place, |axis, above, other| {
+                    slowest = slowest.min(crossed[other]);
+                    fastest = fastest.max(crossed[other]);
+                    let mut theirs = self.summed::<Q>(other);
+                    shift_sums::<T, D, NB, Q>(&mut theirs, axis, above);
+                    (0..NB).for_each(|k| sums[k].add_scaled(T::one(), theirs[k]));
+                });
             // Stress may jump where the material changes.
             let alike = fastest <= slowest * T::lit(ALIKE);
             let wide = fits
@@ -183,6 +200,9 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                 .filter(|_| alike)
                 .map(|wide| wide.coefficients_from_sums(sums));
             let [own, neighbours] = self.relaxation.shares(crossed[place]);
+            if fits.is_open() {
+                continue;
+            }
             for (p, s) in local(cloud, cell, &fits.patch) {
                 let old = values[p];
                 values[p].add_scaled(own, difference(&s, &seen, old));
@@ -203,6 +223,9 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         values: &mut [Q],
     ) {
         for ((cell, fits), &crossed) in self.each_cell(cloud).zip(crossed) {
+            if fits.is_open() {
+                continue;
+            }
             let [share, _] = self.relaxation.shares(crossed);
             let weight = weights[first(cloud, cell)];
             let equal = local(cloud, cell, &fits.patch).all(|(p, _)| weights[p] == weight);
@@ -236,6 +259,25 @@ fn difference<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
     difference
 }
 
+/// Streams the values at the particles of a cell.
+#[inline(always)]
+fn emit_particles<T: Scalar, const D: usize, Q: Field<T>>(
+    cloud: &Cloud<'_, T, D>,
+    cell: usize,
+    value: &impl Fn(usize) -> Q,
+    sink: &mut impl FnMut(&Point<T, D>, Q),
+) {
+    for &p in cloud.bins.particles_in(cell) {
+        let p = p as usize;
+        let point = Point {
+            cell: *cloud.bins.cell_of(p),
+            position: cloud.positions[p],
+            moves: true,
+        };
+        sink(&point, value(p).scaled(cloud.volumes[p]));
+    }
+}
+
 /// First particle of an occupied cell.
 #[inline(always)]
 fn first<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: usize) -> usize {
@@ -260,7 +302,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         self.cells
             .extend(occupied.map(|&cell| RelaxedCell::alone(cloud, cell as usize, self.tolerance)));
         cells::join(&mut self.cells, cloud, self.tolerance);
-        self.reduced = self.cells.iter().filter(|fits| !fits.is_full()).count();
+        let reduced = |fits: &&RelaxedCell<T, D, NB>| !fits.is_open() && !fits.is_full();
+        self.reduced = self.cells.iter().filter(reduced).count();
     }
 
     #[inline(always)]
@@ -293,6 +336,10 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     ) {
         let numbers = cloud.bins.occupied()[cells.clone()].iter();
         for (place, (&cell, fits)) in cells.clone().zip(numbers.zip(&self.cells[cells])) {
+            if fits.is_open() {
+                emit_particles(cloud, cell as usize, &value, &mut sink);
+                continue;
+            }
             let samples = local(cloud, cell as usize, &fits.patch).map(|(p, s)| (s, T::one(), value(p)));
             let coefficients = match &fits.wide {
                 Some(wide) if !fits.is_full() => {
@@ -323,6 +370,10 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
             None => self.relax_towards_both(cloud, crossed, values),
             Some(weights) => self.relax_towards_own(cloud, weights, crossed, values),
         }
+    }
+
+    fn filling(&self, place: usize) -> Filling {
+        self.cells.get(place).map_or(Filling::Full, |fits| fits.filling)
     }
 
     fn reduced_cells(&self) -> usize {

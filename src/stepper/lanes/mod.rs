@@ -36,7 +36,7 @@ pub(super) const fn apply<T: Scalar, const D: usize, B: BasisFamily<T, D>>() -> 
 
 /// Whether fits can be integrated over four cells at a time.
 pub(super) const fn fit<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>>() -> bool {
-    apply::<T, D, B>() && R::BY_FOUR && !R::FIELDS_MOVE && B::FIXED_POINTS_ALIKE
+    apply::<T, D, B>() && R::BY_FOUR && B::FIXED_POINTS_ALIKE
 }
 
 /// Particles of one cell that follow each other, at most [`LANES`].

@@ -108,7 +108,7 @@ where
                     whole[i] -= total * gradient;
                     liquid[i] -= gradient * pressure;
                 };
-                if R::FIELDS_MOVE {
+                if point.moves {
                     basis.for_each(cloud.grid, &point.cell, &point.position, add);
                 } else {
                     basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);

@@ -219,7 +219,11 @@ impl<const AT: bool> Faulty<AT> {
             Mistake::Moved => position[0] += 1e-9,
             _ => {}
         }
-        Point { cell, position }
+        Point {
+            cell,
+            position,
+            moves: true,
+        }
     }
 }
 
