@@ -21,9 +21,10 @@ use body::{Body, Order, POISSON, YOUNG, walls};
 use counts::Counts;
 use yardstick::Plain;
 
-const SAMPLES: usize = 21;
-/// Particle-steps of a sample.
-const WORK: usize = 300_000;
+const SAMPLES: usize = 11;
+/// Least time (s) of a sample. The system counts what a thread ran up to its last tick, some milliseconds ago: samples of ten
+/// milliseconds came out up to twice too fast.
+const SAMPLE: f64 = 0.25;
 
 /// Something that steps.
 struct Case {
@@ -31,6 +32,8 @@ struct Case {
     particles: usize,
     counts: Option<Counts>,
     step: Box<dyn FnMut() + Send>,
+    /// Steps of a sample.
+    steps: usize,
     /// Millions of particle-steps a second.
     samples: Vec<f64>,
 }
@@ -67,6 +70,7 @@ fn case<const D: usize>(
             let Shared(simulation) = &mut simulation;
             simulation.step(dt, &forcing).expect("a stable step");
         }),
+        steps: 0,
         samples: Vec::new(),
     }]
 }
@@ -112,6 +116,7 @@ fn yardstick(body: Body, counts: Option<Counts>) -> Option<Case> {
         particles: plain.len(),
         counts,
         step: Box::new(move || plain.step(dt)),
+        steps: 0,
         samples: Vec::new(),
     })
 }
@@ -171,13 +176,20 @@ fn measure(mut cases: Vec<Case>, threads: usize, limits: (f64, f64)) {
     let pool = pool.expect("threads");
     for sample in 0..=SAMPLES {
         for case in &mut cases {
-            let steps = WORK.div_ceil(case.particles).min(100);
-            let seconds = pool.install(|| time(threads, || (0..steps).for_each(|_| (case.step)())));
-            // The first one warms up.
-            if sample > 0 {
-                case.samples
-                    .push(1e-6 * (steps * case.particles) as f64 / seconds);
+            let run = |case: &mut Case, steps| {
+                pool.install(|| time(threads, || (0..steps).for_each(|_| (case.step)())))
+            };
+            // The first one warms up and says how many steps a sample takes.
+            if sample == 0 {
+                case.steps = 1;
+                while run(case, case.steps) < SAMPLE {
+                    case.steps *= 2;
+                }
+                continue;
             }
+            let seconds = run(case, case.steps);
+            case.samples
+                .push(1e-6 * (case.steps * case.particles) as f64 / seconds);
         }
     }
     for case in &mut cases {
