@@ -69,9 +69,9 @@ fn taylor_converges_at_first_order() {
 
 #[test]
 fn relaxed_taylor_is_the_most_accurate_with_every_basis() {
-    check(LINEAR, RelaxedTaylor, [4.92e-2, 2.08e-2]);
-    check(DUAL_DOMAIN, RelaxedTaylor, [2.70e-2, 1.01e-2]);
-    check(BSPLINE, RelaxedTaylor, [5.01e-3, 1.37e-3]);
+    check(LINEAR, RelaxedTaylor, [5.02e-2, 2.13e-2]);
+    check(DUAL_DOMAIN, RelaxedTaylor, [2.73e-2, 1.02e-2]);
+    check(BSPLINE, RelaxedTaylor, [5.08e-3, 1.39e-3]);
 }
 
 /// Fits of irregular layouts that kept every function with 2 % left did not converge, or the run stopped.
@@ -80,7 +80,7 @@ fn jittered_particles_converge_too() {
     let jitter = ["body.0.jitter=0.6"];
     check_with(LINEAR, Taylor, &jitter, [9.65e-2, 4.84e-2]);
     check_with(BSPLINE, Taylor, &jitter, [9.10e-2, 4.22e-2]);
-    check_with(LINEAR, RelaxedTaylor, &jitter, [6.22e-2, 2.04e-2]);
+    check_with(LINEAR, RelaxedTaylor, &jitter, [6.33e-2, 2.08e-2]);
     check_with(BSPLINE, RelaxedTaylor, &jitter, [1.91e-2, 5.78e-3]);
     // On 32 cells the error with 2 % was 0.27.
     assert!(plane(LINEAR, Taylor, 32, &jitter) < 4e-2);
