@@ -159,11 +159,10 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for DruckerPrager<T> {
         stress: &SMatrix<T, D, D>,
         state: &Self::State,
     ) -> Option<SMatrix<T, D, D>> {
-        if state.gap > T::zero() {
-            return None;
-        }
+        let separated = state.gap > T::zero();
         let speed = self.wave_speed(density, stress, state);
-        hooke_strain_at(&self.moduli, change, density * speed * speed)
+        let modulus = density * speed * speed;
+        (!separated).then(|| hooke_strain_at(&self.moduli, change, modulus))
     }
 
     /// That of elastic waves, which plastic ones never outrun; of separated material what it will be on contact, or more.

@@ -3,7 +3,6 @@
 use nalgebra::SMatrix;
 
 use super::elastic_stretch::{ElasticStretch, stored_energy, wave_modulus};
-use super::linear_elastic::hooke_strain_at;
 use super::{ConstitutiveLaw, Moduli};
 use crate::scalar::Scalar;
 
@@ -58,15 +57,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hencky<T> {
     }
 
     #[inline]
-    fn strain_for(
-        &self,
-        change: &SMatrix<T, D, D>,
-        density: T,
-        stress: &SMatrix<T, D, D>,
-        state: &Self::State,
-    ) -> Option<SMatrix<T, D, D>> {
-        let speed = self.wave_speed(density, stress, state);
-        hooke_strain_at(&self.moduli, change, density * speed * speed)
+    fn elastic_constants(&self) -> Option<Moduli<T>> {
+        Some(self.moduli)
     }
 
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T {

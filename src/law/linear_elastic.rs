@@ -46,15 +46,14 @@ fn hooke_strain<T: Scalar, const D: usize>(
     strain / two_mu
 }
 
-/// The same of material that is stiffer or softer now: `modulus` (Pa) of its fastest wave. `None` if it bears nothing.
+/// The same of material that is stiffer or softer now: `modulus` (Pa) of its fastest wave.
 #[inline]
 pub(super) fn hooke_strain_at<T: Scalar, const D: usize>(
     moduli: &Moduli<T>,
     stress: &SMatrix<T, D, D>,
     modulus: T,
-) -> Option<SMatrix<T, D, D>> {
-    let bears = modulus > T::zero();
-    bears.then(|| hooke_strain(moduli, stress) * (moduli.p_wave() / modulus))
+) -> SMatrix<T, D, D> {
+    hooke_strain(moduli, stress) * (moduli.p_wave() / modulus)
 }
 
 /// `sigma : C^-1 : sigma / 2` for plane or uniaxial strain, where the strains off the plane are zero.

@@ -88,12 +88,19 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Sync {
         (free || size_of::<Self::State>() == 0).then(Self::State::default)
     }
 
+    /// Hooke's constants of the elastic part at rest; `None` if the law has none to tell.
+    #[inline]
+    fn elastic_constants(&self) -> Option<Moduli<T>> {
+        None
+    }
+
     /// Strain that changes the stress by about `change` (Pa), for a reconstruction that moves stresses a little towards what it
     /// sees of them: a stress that follows from a state is moved with it, by an [`ConstitutiveLaw::update`] over this strain. `None`
     /// if it must be left alone, as of material that is separated.
     ///
-    /// Unless told otherwise the change over the modulus of the fastest wave: that moves the stress of any stable material
-    /// in the right direction, though not all of it as fast.
+    /// Unless told otherwise that of Hooke's law with the [`ConstitutiveLaw::elastic_constants`], scaled to the modulus of the fastest
+    /// wave now; without constants the change over that modulus, which moves the stress of any stable material in the right
+    /// direction, though not all of it as fast.
     #[inline]
     fn strain_for(
         &self,
@@ -103,7 +110,11 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Sync {
         state: &Self::State,
     ) -> Option<SMatrix<T, D, D>> {
         let speed = self.wave_speed(density, stress, state);
-        (speed > T::zero()).then(|| change / (density * speed * speed))
+        let modulus = density * speed * speed;
+        (modulus > T::zero()).then(|| match self.elastic_constants() {
+            Some(moduli) => linear_elastic::hooke_strain_at(&moduli, change, modulus),
+            None => change / modulus,
+        })
     }
 
     /// Speed (m/s) of the fastest wave in material of the given current `density` (kg/m3).

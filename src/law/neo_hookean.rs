@@ -2,7 +2,6 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::linear_elastic::hooke_strain_at;
 use super::{ConstitutiveLaw, Moduli};
 use crate::scalar::Scalar;
 use crate::tensor::{Spectral, determinant, symmetric};
@@ -113,15 +112,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NeoHookean<T> {
     }
 
     #[inline]
-    fn strain_for(
-        &self,
-        change: &SMatrix<T, D, D>,
-        density: T,
-        stress: &SMatrix<T, D, D>,
-        state: &Self::State,
-    ) -> Option<SMatrix<T, D, D>> {
-        let speed = self.wave_speed(density, stress, state);
-        hooke_strain_at(&self.moduli, change, density * speed * speed)
+    fn elastic_constants(&self) -> Option<Moduli<T>> {
+        Some(self.moduli)
     }
 
     /// From `J d sigma/dJ` along the most stretched axis. Its squared stretch is the largest row sum of `F F^T` (Gershgorin):

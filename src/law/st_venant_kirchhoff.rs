@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 
-use super::linear_elastic::{hooke, hooke_strain_at};
+use super::linear_elastic::hooke;
 use super::{ConstitutiveLaw, DeformationGradient, Moduli};
 use crate::scalar::Scalar;
 use crate::tensor::determinant;
@@ -58,15 +58,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for StVenantKirchhoff<T> {
     }
 
     #[inline]
-    fn strain_for(
-        &self,
-        change: &SMatrix<T, D, D>,
-        density: T,
-        stress: &SMatrix<T, D, D>,
-        state: &Self::State,
-    ) -> Option<SMatrix<T, D, D>> {
-        let speed = self.wave_speed(density, stress, state);
-        hooke_strain_at(&self.moduli, change, density * speed * speed)
+    fn elastic_constants(&self) -> Option<Moduli<T>> {
+        Some(self.moduli)
     }
 
     /// From `J d sigma/dJ = (lambda + 2 mu) l^4 / J + sigma` for the stretch `l` along an axis. Where the stretches lie

@@ -4,7 +4,6 @@ use nalgebra::{SMatrix, Vector3};
 
 use super::constant::{not_negative, positive};
 use super::elastic_stretch::{ElasticStretch, stored_energy, wave_modulus};
-use super::linear_elastic::hooke_strain_at;
 use super::{ConstitutiveLaw, Moduli};
 use crate::error::SetupError;
 use crate::scalar::Scalar;
@@ -129,15 +128,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for VonMises<T> {
     }
 
     #[inline]
-    fn strain_for(
-        &self,
-        change: &SMatrix<T, D, D>,
-        density: T,
-        stress: &SMatrix<T, D, D>,
-        state: &Self::State,
-    ) -> Option<SMatrix<T, D, D>> {
-        let speed = self.wave_speed(density, stress, state);
-        hooke_strain_at(&self.moduli, change, density * speed * speed)
+    fn elastic_constants(&self) -> Option<Moduli<T>> {
+        Some(self.moduli)
     }
 
     /// That of elastic waves, which plastic ones never outrun.

@@ -1,18 +1,20 @@
 //! Taylor least squares.
 
+mod cell_group;
 mod virtual_points;
 
 use std::ops::Range;
 
 use nalgebra::SVector;
 
+use cell_group::{CellGroup, lanes_of};
 use virtual_points::Lent;
 
 use super::gauss::GaussRule;
 use super::{Cloud, Four, Patch, Point, Reconstruction};
 use crate::field::Field;
 use crate::grid::Cell;
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::Lanes;
 use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
 use crate::taylor::{
@@ -376,66 +378,6 @@ fn fit_about_mean<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
     coefficients
 }
 
-/// Up to four occupied cells with their particles; spare lanes repeat the last cell.
-struct CellGroup<'a, const D: usize> {
-    len: usize,
-    cells: [Cell<D>; LANES],
-    particles: [&'a [u32]; LANES],
-    counts: [usize; LANES],
-}
-
-impl<'a, const D: usize> CellGroup<'a, D> {
-    #[inline(always)]
-    fn new<T: Scalar>(cloud: &Cloud<'a, T, D>, places: Range<usize>) -> Self {
-        let occupied = &cloud.bins.occupied()[places];
-        let numbers: [usize; LANES] = std::array::from_fn(|l| occupied[l.min(occupied.len() - 1)] as usize);
-        let particles = numbers.map(|number| cloud.bins.particles_in(number));
-        Self {
-            len: occupied.len(),
-            cells: numbers.map(|number| cloud.grid.cell(number)),
-            counts: particles.map(<[u32]>::len),
-            particles,
-        }
-    }
-
-    /// Most particles of a cell.
-    fn longest(&self) -> usize {
-        self.counts.iter().copied().max().unwrap_or(0)
-    }
-
-    /// The `k`-th particle of each cell, and one; the last particle and zero where there are fewer.
-    #[inline(always)]
-    fn points<T: Scalar, V: Lanes<T>>(&self, k: usize) -> ([usize; LANES], V) {
-        let numbers = std::array::from_fn(|l| self.particles[l][k.min(self.counts[l] - 1)] as usize);
-        let weights = self
-            .counts
-            .map(|count| if k < count { T::one() } else { T::zero() });
-        (numbers, V::new(weights))
-    }
-
-    /// Local coordinates of one particle of each cell.
-    #[inline(always)]
-    fn local<T: Scalar, V: Lanes<T>>(&self, cloud: &Cloud<'_, T, D>, numbers: &[usize; LANES]) -> [V; D] {
-        let x = numbers.map(|p| cloud.positions[p]);
-        let (two, one) = (V::splat(T::lit(2.0)), V::splat(T::one()));
-        std::array::from_fn(|a| {
-            let x = V::new(std::array::from_fn(|l| x[l][a])) - V::splat(cloud.grid.min()[a]);
-            let cell = V::new(std::array::from_fn(|l| T::lit(f64::from(self.cells[l][a]))));
-            (x * V::splat(cloud.grid.inverse_cell_size()[a]) - cell) * two - one
-        })
-    }
-}
-
-/// The components of four values.
-#[inline(always)]
-fn lanes_of<T: Scalar, V: Lanes<T>, Q: Field<T>>(values: &[Q; LANES]) -> [V; MOST_COMPONENTS] {
-    let mut components = [V::splat(T::zero()); MOST_COMPONENTS];
-    for q in 0..Q::COMPONENTS {
-        components[q] = V::new(std::array::from_fn(|l| values[l].component(q)));
-    }
-    components
-}
-
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor<T, D, NB> {
     const FIELDS_AT_PARTICLES: bool = false;
     const AMOUNTS_AT_PARTICLES: bool = false;
@@ -617,6 +559,7 @@ mod tests {
     use super::*;
     use crate::field::MassMomentum;
     use crate::grid::Grid;
+    use crate::lanes::LANES;
     use crate::particles::Bins;
 
     /// Four cells at once leave one whose density might be negative to the way that draws it towards its mean, where it is a mass.
