@@ -90,6 +90,7 @@ where
         face: TOP,
         area: 1.0,
         reach: 0.5,
+        loaded: true,
     };
     let moduli = Moduli::uniaxial(1e7).expect("a positive modulus");
     let stepper = Stepper::new(Setup {

@@ -73,6 +73,7 @@ pub fn run() -> Result<f64, Box<dyn Error>> {
         face: face(Side::Max),
         area: 1.0,
         reach: 0.5,
+        loaded: true,
     }];
     let mut stepper = Stepper::new(Setup {
         grid,

@@ -66,7 +66,7 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
             ("1", "a dry solid"),
             (
                 "2",
-                "a saturated solid: solid and pore liquid with velocities of their own (v-w), 1-D",
+                "a saturated solid: solid and pore liquid with velocities of their own (v-w), 1-D and 2-D",
             ),
         ],
     ),

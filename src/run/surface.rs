@@ -23,13 +23,16 @@ pub(super) fn surfaces<const D: usize>(
     for face in Face::all::<D>().filter(|&face| is_needed(scene, body, face)) {
         let area = filling.lattice.volume() / filling.lattice.spacing()[face.axis];
         for particle in ends(filling, face) {
-            let acts = acts_at(scene, face, &filling.particles.position[particle])?;
-            if acts && !touches_another(scene, body, filling, particle, face) {
+            let loaded = acts_at(scene, face, &filling.particles.position[particle])?;
+            // The liquid meets a surface whether it bears a load or not.
+            let needed = loaded || scene.material.phases.count() > 1;
+            if needed && !touches_another(scene, body, filling, particle, face) {
                 points.push(SurfacePoint {
                     particle: first + particle,
                     face,
                     area,
                     reach: reach(body, filling, particle, face),
+                    loaded,
                 });
             }
         }
@@ -37,7 +40,7 @@ pub(super) fn surfaces<const D: usize>(
     Ok(points)
 }
 
-/// Whether the boundary at `face` says that it acts at `x` (m).
+/// Whether the boundary at `face` says that its traction acts at `x` (m).
 fn acts_at<const D: usize>(scene: &Scene, face: Face, x: &SVector<f64, D>) -> Result<bool, RunError> {
     let mut there = scene.boundaries.iter().filter(|boundary| boundary.face == face);
     match there.find_map(|boundary| boundary.inside.as_ref()) {
@@ -197,6 +200,18 @@ mod tests {
         let right = ends(&[ONE_PHASE, two, &loaded(", inside='x - 1'")]);
         assert_eq!(right, [("x-max".to_owned(), 7)]);
         assert_eq!(ends(&[ONE_PHASE, two, &loaded(", inside='-x'")]), []);
+    }
+
+    #[test]
+    fn the_liquid_meets_a_surface_also_where_no_traction_acts() {
+        let two = "body=[{min=[0], max=[0.5], particles_per_cell=[2]}, {min=[1], max=[1.5], particles_per_cell=[2]}]";
+        let right = "boundary=[{face='x-max', traction=['1'], inside='x - 1', drained=true}]";
+        let found: Vec<_> = points(&[two, right])
+            .iter()
+            .map(|p| (p.particle, p.loaded))
+            .collect();
+        // Both ends of both bodies; nothing is said of where a traction acts on those that look the other way.
+        assert_eq!(found, [(0, true), (3, false), (4, true), (7, true)]);
     }
 
     #[test]

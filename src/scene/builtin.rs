@@ -1,7 +1,7 @@
 //! Scenes that are compiled in.
 
 /// Names and texts; the first is the default.
-const SCENES: [(&str, &str); 19] = [
+const SCENES: [(&str, &str); 20] = [
     (
         "vibrating-bar-large",
         include_str!("../../examples/scenes/vibrating-bar-large.toml"),
@@ -69,6 +69,7 @@ const SCENES: [(&str, &str); 19] = [
     ),
     ("dam-break", include_str!("../../examples/scenes/dam-break.toml")),
     ("slope", include_str!("../../examples/scenes/slope.toml")),
+    ("footing", include_str!("../../examples/scenes/footing.toml")),
 ];
 
 /// Text of the scene `name`.

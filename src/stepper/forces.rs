@@ -207,6 +207,9 @@ where
             let FaceCondition::Traction(traction) = forcing.face(point.face) else {
                 continue;
             };
+            if !point.loaded {
+                continue;
+            }
             let x = self.surface_position(point);
             let cell = self.bins.cell_of(point.particle);
             let load = traction * point.area;

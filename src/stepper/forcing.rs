@@ -148,6 +148,8 @@ pub struct SurfacePoint<T> {
     pub area: T,
     /// Distance of the surface from the particle in lengths of the particle: 1/2 in a regular layout.
     pub reach: T,
+    /// Whether the traction of the face acts here; what the liquid meets there it meets here in any case.
+    pub loaded: bool,
 }
 
 impl<T: Scalar> SurfacePoint<T> {
@@ -158,6 +160,7 @@ impl<T: Scalar> SurfacePoint<T> {
             face: self.face,
             area: U::lit(self.area.primal()),
             reach: U::lit(self.reach.primal()),
+            loaded: self.loaded,
         }
     }
 
@@ -229,6 +232,7 @@ mod tests {
                 face: Face { axis: 1, side },
                 area: 0.5,
                 reach: 0.5,
+                loaded: true,
             };
             point.position(&grid, &[2, 2], &vector![0.5, 0.625], volume)
         };
@@ -248,6 +252,7 @@ mod tests {
             },
             area: 1.0,
             reach: 0.5,
+            loaded: true,
         };
         assert!(good.validate::<1>(2).is_ok());
         assert!(good.validate::<1>(1).is_err());

@@ -9,7 +9,8 @@ use crate::run::Outcome;
 use crate::scene::Scene;
 
 /// Writes `fields.svg`: particles where they are at the end, coloured by the sizes of displacement and velocity, by the mean stress
-/// and by von Mises' stress. Particles in space are seen along `y`, the later ones in front.
+/// and by von Mises' stress; with two phases by the pore pressure instead of the velocity, and the stress is the effective one.
+/// Particles in space are seen along `y`, the later ones in front.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -20,16 +21,22 @@ pub fn write_maps<const D: usize>(
 ) -> Result<PathBuf, OutputError> {
     let particles = &run.particles;
     let size = |v: &SVector<f64, D>| v.norm();
+    let (second, mean_name) = match run.liquid.is_empty() {
+        true => {
+            let speeds = particles.velocity.iter().map(size);
+            (panel(scene, run, "velocity", "m/s", speeds), "mean stress")
+        }
+        false => {
+            let pressures = run.liquid.iter().map(|liquid| liquid.pressure);
+            let pressures = panel(scene, run, "pore pressure", "Pa", pressures);
+            (pressures, "mean effective stress")
+        }
+    };
+    let displacements = particles.displacement.iter().map(size);
     let panels = [
-        panel(
-            scene,
-            run,
-            "displacement",
-            "m",
-            particles.displacement.iter().map(size),
-        ),
-        panel(scene, run, "velocity", "m/s", particles.velocity.iter().map(size)),
-        panel(scene, run, "mean stress", "Pa", particles.stress.iter().map(mean)),
+        panel(scene, run, "displacement", "m", displacements),
+        second,
+        panel(scene, run, mean_name, "Pa", particles.stress.iter().map(mean)),
         panel(
             scene,
             run,

@@ -132,6 +132,7 @@ fn after_200_steps<P: Phase<f64, 1>>(
         face: face(Side::Max),
         area: 1.0,
         reach: 0.5,
+        loaded: true,
     }];
     let moduli = Moduli::uniaxial(1e7).unwrap();
     let mut stepper = Stepper::new(Setup {

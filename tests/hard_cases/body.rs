@@ -84,6 +84,7 @@ impl<L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Copy + 'static> Bodies<L> 
                 face,
                 area: 1.0,
                 reach: 0.5,
+                loaded: true,
             }));
         }
         self

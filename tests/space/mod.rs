@@ -5,6 +5,8 @@ mod cantilever;
 mod collapse;
 mod cook;
 mod discs;
+mod footing;
+mod mandel;
 mod manufactured;
 mod patch;
 mod rotation;

@@ -119,6 +119,7 @@ where
                 face,
                 area: 1.0,
                 reach: 0.5,
+                loaded: true,
             })
             .collect();
         Box::new(

@@ -62,6 +62,7 @@ impl MethodVisitor<f64> for &Scene {
             face: TOP,
             area: 1.0,
             reach: (self.fill - particles.position[last][0]) / volume,
+            loaded: true,
         }];
         let moduli = Moduli::uniaxial(self.modulus).unwrap();
         let stepper = Stepper::new(Setup {

@@ -45,7 +45,7 @@ pub(super) fn read(
         let kind = kind(&entry, &section, grid.cells.len(), end, phases)?;
         boundaries.push(Boundary {
             face: face.1,
-            inside: inside(&section, &kind, grid, phases)?,
+            inside: inside(&section, &kind, grid)?,
             kind,
             pores,
         });
@@ -110,13 +110,12 @@ fn inside(
     section: &Section<'_>,
     kind: &BoundaryKind,
     grid: &GridSpec,
-    phases: PhaseCount,
 ) -> Result<Option<Expression>, SceneError> {
     let Some(item) = section.optional("inside") else {
         return Ok(None);
     };
-    if !matches!(kind, BoundaryKind::Traction(_)) || phases == PhaseCount::Two {
-        return Err(item.conflict("it says where a traction acts, in one phase; expected traction beside it"));
+    if !matches!(kind, BoundaryKind::Traction(_)) {
+        return Err(item.conflict("it says where a traction acts; expected traction beside it"));
     }
     item.expression(coordinates(grid.cells.len())).map(Some)
 }

@@ -43,10 +43,11 @@ fn is_held<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePo
 /// Force per area (Pa) on the whole.
 fn traction<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> SVector<T, D> {
     match forcing.face(point.face) {
-        FaceCondition::Traction(traction) => *traction,
-        FaceCondition::Free | FaceCondition::Held { .. } | FaceCondition::Frictional { .. } => {
-            SVector::zeros()
-        }
+        FaceCondition::Traction(traction) if point.loaded => *traction,
+        FaceCondition::Traction(_)
+        | FaceCondition::Free
+        | FaceCondition::Held { .. }
+        | FaceCondition::Frictional { .. } => SVector::zeros(),
     }
 }
 

@@ -119,6 +119,7 @@ pub(super) const CONSOLIDATION: &[Case] = &[
      &["reference.consolidation = { load = -10000.0, start = 0.5 }", "traction = load", "found -2.0000e4"]),
     ("a load that grows", Set("boundary.1.traction=[\"-1e4*t/0.5\"]"), &["reference.consolidation", "at t = 0.0000e0 s"]),
     ("no load", Set("boundary.1={face=\"x-max\", drained=true}"), &["reference.consolidation", "traction = load"]),
+    ("a load on a part", Set("boundary.1.inside=\"x\""), &["reference.consolidation", "on all of x-max", "no inside"]),
     ("a sealed top", Set("boundary.1={face=\"x-max\", traction=[\"-1e4\"]}"), &["reference.consolidation", "at x-max with drained = true"]),
     ("a pressure outside", Set("boundary.1={face=\"x-max\", traction=[\"-1e4\"], pore_pressure=\"0\"}"), &["drained = true"]),
     ("a drained base", Set("boundary.0.drained=true"), &["reference.consolidation", "fixed = true at x-min", "neither drained"]),

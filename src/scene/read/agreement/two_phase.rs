@@ -108,6 +108,9 @@ fn layer(scene: &Scene, load: f64) -> Result<(), Problem> {
     let body = one_body(scene)?;
     standing(scene, body)?;
     let top = drained_top(scene)?;
+    if top.is_some_and(|top| top.inside.is_some()) {
+        return Err("it needs its load on all of x-max; expected no inside beside traction".into());
+    }
     for part in PARTS {
         let time = part * scene.time.end;
         let found = match top.map(|top| &top.kind) {
