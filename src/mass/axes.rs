@@ -62,11 +62,8 @@ impl<T: Scalar, const D: usize> AxisMasses<T, D> {
     pub fn solve(&self, x: &mut [T]) {
         let mut stride = 1;
         for axis in 0..D {
-            let length = stride * self.shape[axis];
-            for lines in x.chunks_exact_mut(length.max(1)) {
-                self.factors[axis].solve_lines(lines, stride);
-            }
-            stride = length;
+            self.factors[axis].solve_lines(x, stride);
+            stride *= self.shape[axis];
         }
     }
 }

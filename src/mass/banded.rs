@@ -214,14 +214,28 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
-    /// Solves with the factorised matrix for `stride` right-hand sides at once: what belongs to an unknown is a row of `stride`
-    /// numbers of `x`.
+    /// Solves with the factorised matrix for all right-hand sides in `x`. What belongs to an unknown is a row of `stride` numbers, and
+    /// so many rows as there are unknowns lie end to end again and again.
     pub(crate) fn solve_lines(&self, x: &mut [T], stride: usize) {
         match (stride, self.half_band) {
-            (1, 1) => narrow::solve_line::<T, 2>(&self.rows, x),
-            (1, 2) => narrow::solve_line::<T, 3>(&self.rows, x),
-            (1, 3) => narrow::solve_line::<T, 4>(&self.rows, x),
-            _ => self.solve_wide_lines(x, stride),
+            (1, 1) => self.solve_narrow_lines::<2>(x),
+            (1, 2) => self.solve_narrow_lines::<3>(x),
+            (1, 3) => self.solve_narrow_lines::<4>(x),
+            _ => {
+                for lines in x.chunks_exact_mut((stride * self.order).max(1)) {
+                    self.solve_wide_lines(lines, stride);
+                }
+            }
+        }
+    }
+
+    fn solve_narrow_lines<const W: usize>(&self, x: &mut [T]) {
+        let mut several = x.chunks_exact_mut((narrow::ABREAST * self.order).max(1));
+        for lines in several.by_ref() {
+            narrow::solve_abreast::<T, W>(&self.rows, lines);
+        }
+        for line in several.into_remainder().chunks_exact_mut(self.order.max(1)) {
+            narrow::solve_line::<T, W>(&self.rows, line);
         }
     }
 
@@ -319,6 +333,23 @@ mod tests {
             }
         }
         (banded, dense)
+    }
+
+    #[test]
+    fn lines_abreast_are_solved_to_the_bit_as_one_alone() {
+        for w in 1..=3 {
+            let (mut banded, _) = sample(11, w);
+            banded.factorise();
+            let lines: Vec<f64> = (0..11 * 21).map(|i| (i * i % 17) as f64 - 8.0).collect();
+            let mut abreast = lines.clone();
+            banded.solve_lines(&mut abreast, 1);
+            for (line, found) in lines.chunks(11).zip(abreast.chunks(11)) {
+                let mut x: Vec<_> = line.iter().map(|&x| vector![x]).collect();
+                banded.solve(&mut x, 0);
+                let alone: Vec<f64> = x.iter().map(|x| x[0]).collect();
+                assert_eq!(found, alone);
+            }
+        }
     }
 
     #[test]

@@ -40,6 +40,45 @@ pub(super) fn solve<T: Scalar, const D: usize, const W: usize>(
     solve_each::<T, _, W>(rows, x, |x| &mut x[axis]);
 }
 
+/// How many lines are solved side by side: one alone waits for itself.
+pub(super) const ABREAST: usize = 8;
+
+/// Solves for one number each in [`ABREAST`] lines that lie end to end.
+pub(super) fn solve_abreast<T: Scalar, const W: usize>(rows: &[T], x: &mut [T]) {
+    let (rows, _) = rows.as_chunks::<W>();
+    let length = rows.len();
+    let x = &mut x[..ABREAST * length];
+    let mut before = [[T::zero(); ABREAST]; W];
+    for (i, row) in rows.iter().enumerate() {
+        let mut value: [T; ABREAST] = std::array::from_fn(|l| x[l * length + i]);
+        for k in 0..W - 1 {
+            for l in 0..ABREAST {
+                value[l] -= row[k] * before[k + 1][l];
+            }
+        }
+        for l in 0..ABREAST {
+            x[l * length + i] = value[l];
+        }
+        for k in 1..W {
+            before[k - 1] = before[k];
+        }
+        before[W - 1] = value;
+    }
+    let mut taken = [[T::zero(); ABREAST]; W];
+    for (i, row) in rows.iter().enumerate().rev() {
+        let mut value = [T::zero(); ABREAST];
+        for l in 0..ABREAST {
+            value[l] = x[l * length + i] * row[W - 1] - taken[0][l];
+            x[l * length + i] = value[l];
+        }
+        for k in 0..W - 1 {
+            for l in 0..ABREAST {
+                taken[k][l] = taken[k + 1][l] + row[W - 2 - k] * value[l];
+            }
+        }
+    }
+}
+
 /// Solves for one number each.
 pub(super) fn solve_line<T: Scalar, const W: usize>(rows: &[T], x: &mut [T]) {
     solve_each::<T, _, W>(rows, x, |x| x);
