@@ -9,7 +9,7 @@ use crate::scalar::Scalar;
 
 /// A quantity that particles carry and that can be added and scaled: a scalar, a vector, a tensor,
 /// or several of them fitted in one pass ([`MassMomentum`]).
-pub trait Field<T>: Copy + Zero + Send {
+pub trait Field<T>: Copy + Zero + Send + Sync {
     /// `self += weight * other`.
     fn add_scaled(&mut self, weight: T, other: Self);
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::SVector;
 
 use super::tensor::{self, AxisFamily, Row};
-use super::{BasisFamily, Linear};
+use super::{BasisFamily, FixedPoints, Linear};
 use crate::grid::{Cell, Grid};
 use crate::particles::Bins;
 use crate::scalar::Scalar;
@@ -100,7 +100,7 @@ impl<T: Scalar> AxisFamily<T, 4> for DualDomain {
 
 impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
     const TAKES_IN_CELLS: bool = true;
-    const FIXED_POINTS_ALIKE: bool = false;
+    const AT_FIXED_POINTS: FixedPoints = FixedPoints::Linear;
     const FOLLOWS_WINDOW: bool = true;
 
     fn take_in(&mut self, grid: &Grid<T, D>, bins: &Bins<D>) {

@@ -25,6 +25,17 @@ use crate::lanes::Lanes;
 use crate::particles::Bins;
 use crate::scalar::Scalar;
 
+/// What a family is at points that stand still, where nothing crosses from cell to cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FixedPoints {
+    /// The same as at those that move.
+    Alike,
+    /// [`Linear`] functions of the same DOFs, whose values are also those at points that move.
+    Linear,
+    /// Something else.
+    Other,
+}
+
 /// A family of grid basis functions `phi_i` in `D` dimensions.
 ///
 /// The DOFs form a lattice, axis 0 fastest. Implementors promise a partition of unity, non-negative values,
@@ -55,8 +66,8 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     /// is much larger then takes memory in proportion to itself. Without it the window is always the whole grid.
     const FOLLOWS_WINDOW: bool = false;
 
-    /// Whether [`BasisFamily::for_each_at_fixed_point`] visits what [`BasisFamily::for_each`] does.
-    const FIXED_POINTS_ALIKE: bool = true;
+    /// What [`BasisFamily::for_each_at_fixed_point`] visits.
+    const AT_FIXED_POINTS: FixedPoints = FixedPoints::Alike;
 
     /// The functions of `cell` at several of its points, whose coordinates from 0 to 1 in the cell are `unit`. Only asked where
     /// [`BasisFamily::WIDTH`] is not zero.

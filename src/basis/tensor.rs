@@ -297,7 +297,8 @@ macro_rules! tensor_product_family {
             }
 
             $(
-                const FIXED_POINTS_ALIKE: bool = false;
+                const AT_FIXED_POINTS: $crate::basis::FixedPoints =
+                    $crate::basis::FixedPoints::Other;
 
                 #[inline(always)]
                 fn for_each_at_fixed_point(

@@ -55,6 +55,25 @@ impl<T: Send> Sliced for PerSpan<'_, T> {
     }
 }
 
+/// So many values for each item; the last one may have fewer.
+pub(crate) struct Rows<'a, T> {
+    pub(crate) values: &'a mut [T],
+    pub(crate) width: usize,
+}
+
+impl<T: Send> Sliced for Rows<'_, T> {
+    fn items(&self) -> usize {
+        self.values.len().div_ceil(self.width)
+    }
+
+    fn split(self, _spans: usize, items: usize) -> (Self, Self) {
+        let width = self.width;
+        let (left, right) = self.values.split_at_mut(self.values.len().min(items * width));
+        let part = |values| Self { values, width };
+        (part(left), part(right))
+    }
+}
+
 macro_rules! tuple {
     ($($name:ident $field:tt),+) => {
         /// The first one is asked for the number of items.

@@ -92,6 +92,12 @@ impl<'a, T: Scalar, const D: usize> Cloud<'a, T, D> {
             Patch::cut(self.grid, cell, self.cuts)
         }
     }
+
+    /// Whether a surface cuts a cell.
+    #[inline(always)]
+    pub(crate) fn is_cut(&self, cell: &Cell<D>) -> bool {
+        D == 1 && self.cuts.iter().any(|cut| cut.cell == cell[0])
+    }
 }
 
 /// What became of four cells that were streamed at once.
@@ -168,6 +174,9 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
     /// Whether four cells can be streamed at once without [`Reconstruction::prepare`] ([`Reconstruction::integrate_four`]).
     const BY_FOUR: bool = false;
 
+    /// Whether [`Reconstruction::integrate_four`] wants what [`Reconstruction::prepare`] and [`Reconstruction::take_in_field`] took in.
+    const KEEPS_FITS: bool = false;
+
     /// Takes in the geometry. Every field streamed until the next call shares it.
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>);
 
@@ -188,6 +197,15 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         amount: impl Fn(usize) -> Q,
         sink: impl FnMut(&Point<T, D>, Q),
     );
+
+    /// Takes in the field that [`Reconstruction::integrate_cells`] or [`Reconstruction::integrate_four`] will stream next, where a
+    /// cell's fit wants the values of its neighbours.
+    fn take_in_field<Q: Field<T>>(
+        &mut self,
+        _cloud: &Cloud<'_, T, D>,
+        _value: &(impl Fn(usize) -> Q + Sync),
+    ) {
+    }
 
     /// What [`Reconstruction::integrate`] streams in the given `cells`, places in the list of occupied ones. Only asked where
     /// [`Reconstruction::BY_CELLS`].
@@ -211,15 +229,15 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
     }
 
     /// Coordinates in a cell, each in `[-1, 1]`, of the points along an axis whose products [`Reconstruction::integrate_four`]
-    /// streams, axis 0 fastest.
+    /// streams, axis 0 fastest; none if it cannot as it is set up.
     fn line(&self) -> impl Iterator<Item = T> {
         std::iter::empty()
     }
 
     /// What [`Reconstruction::integrate_conserved`] streams, if `conserve`, or else [`Reconstruction::integrate`], in up to four
-    /// `cells`, places in the list of occupied ones: one cell in each lane, the number of the point and the components of the
-    /// value. `value` is that of a particle: in the first case its density. Only asked where [`Reconstruction::BY_FOUR`] and no
-    /// cell is cut; returns in which cells it failed, so that they must be streamed by [`Reconstruction::integrate_hard`].
+    /// `cells`, places in the list of occupied ones from a multiple of four on: one cell in each lane, the number of the point and the components of the
+    /// value. `value` is that of a particle: in the first case its density. Only asked where [`Reconstruction::BY_FOUR`]; returns in
+    /// which cells it failed (those that a surface cuts always), so that they must be streamed by [`Reconstruction::integrate_hard`].
     fn integrate_four<V: Lanes<T>, Q: Field<T>>(
         &self,
         _cloud: &Cloud<'_, T, D>,

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use nalgebra::SVector;
 
-use cell_group::{CellGroup, lanes_of};
+pub(super) use cell_group::{CellGroup, lanes_of};
 use virtual_points::Lent;
 
 use super::gauss::GaussRule;
@@ -457,7 +457,13 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
     const BY_FOUR: bool = true;
 
     fn line(&self) -> impl Iterator<Item = T> {
-        self.rule.line()
+        // Virtual points want the fits of neighbours.
+        let points = if D == 1 && self.virtual_points {
+            0
+        } else {
+            usize::MAX
+        };
+        self.rule.line().take(points)
     }
 
     #[inline(always)]
@@ -478,11 +484,10 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         for k in 0..group.longest() {
             let (numbers, weight) = group.points::<T, V>(k);
             let s = group.local::<T, V>(cloud, &numbers);
-            let at_points = numbers.map(value);
-            let values = lanes_of::<T, V, Q>(&at_points);
+            let values = lanes_of::<T, V, Q>(|l| value(numbers[l]));
             sums.add(&taylor_lanes::<T, V, D, NB>(&s), weight, &values, Q::COMPONENTS);
             if conserve {
-                let amount = V::new(numbers.map(|p| cloud.volumes[p])) * weight * whole;
+                let amount = V::new(std::array::from_fn(|l| cloud.volumes[numbers[l]])) * weight * whole;
                 for q in 0..Q::COMPONENTS {
                     mean[q] = amount.mul_add(values[q], mean[q]);
                 }
@@ -497,6 +502,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
             fits.coefficients[0] = mean;
             let negative = self.rule.may_be_negative::<V, Q>(&fits.coefficients);
             hard = std::array::from_fn(|l| hard[l] || negative[l]);
+        }
+        if !cloud.cuts.is_empty() {
+            hard = std::array::from_fn(|l| hard[l] || cloud.is_cut(&group.cells[l]));
         }
         self.rule
             .emit_lanes(volume, &fits.coefficients, Q::COMPONENTS, &mut sink);

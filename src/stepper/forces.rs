@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::cell_sums::CellSums;
-use super::lanes::{self, Bodies, Fits, Pass};
+use super::lanes::{self, Bodies, Fits, Pass, at_fixed_points};
 use super::spans::{Spans, share};
 use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
@@ -134,7 +134,7 @@ where
         } else {
             assembly.internal_force(|p| effective[p]);
         }
-        if by_four {
+        if by_four && !R::KEEPS_FITS {
             let reduced = self.spans.reduced.iter().sum();
             self.diagnostics.record_reduced(reduced);
         }
@@ -166,13 +166,13 @@ where
         each_span(parallel, span, work, &|_, (positions, cells, masses, mass)| {
             let (first, mass) = mass.one();
             let mut sink = |i: usize, m| mass[i - first] += m;
-            if const { lanes::apply::<T, D, B>() } {
+            if const { lanes::apply_to_values::<T, D, B>() } {
                 let bodies = Bodies {
                     positions,
                     cells,
                     masses,
                 };
-                return Pass::new(basis, grid).sum_masses(bodies, &mut sink);
+                return at_fixed_points!(B, basis, grid, sum_masses(bodies, &mut sink));
             }
             let mut sums = CellSums::new(basis, grid);
             for ((x, cell), &m) in positions.iter().zip(cells).zip(masses) {
@@ -186,15 +186,24 @@ where
     fn assemble_particle_matrix(&mut self) {
         let (basis, grid, matrix) = (&self.basis, &self.grid, &mut self.dofs.matrix);
         matrix.clear();
-        let masses = self.particles.mass.iter();
-        let particles = self.particles.position.iter().zip(masses).zip(self.bins.cells());
-        let pairs = &mut self.pairs;
-        for ((x, &mass), cell) in particles {
-            pairs.turn_to(cell, matrix);
-            basis.for_each(grid, cell, x, |i, phi, _| pairs.see(i, phi));
-            pairs.add(mass);
+        let bodies = Bodies {
+            positions: &self.particles.position,
+            cells: self.bins.cells(),
+            masses: &self.particles.mass,
+        };
+        if const { lanes::apply_to_values::<T, D, B>() } {
+            let mut sink = |i: usize, j: usize, mass| matrix.add(i, j, mass);
+            at_fixed_points!(B, basis, grid, sum_pairs(bodies, &mut sink));
+        } else {
+            let pairs = &mut self.pairs;
+            let particles = bodies.positions.iter().zip(bodies.masses).zip(bodies.cells);
+            for ((x, &mass), cell) in particles {
+                pairs.turn_to(cell, matrix);
+                basis.for_each(grid, cell, x, |i, phi, _| pairs.see(i, phi));
+                pairs.add(mass);
+            }
+            pairs.flush(matrix);
         }
-        pairs.flush(matrix);
         if D > 1 {
             self.tie_partly_filled_cells();
         }
@@ -251,6 +260,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
                 .reconstruction
                 .integrate(cloud, stress, |point, weighted| add(point, weighted, force, 0));
         }
+        self.reconstruction.take_in_field(cloud, &stress);
         let reconstruction = &*self.reconstruction;
         let occupied = cloud.bins.occupied();
         let Spans {
@@ -272,13 +282,15 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
             let (first, force) = force.one();
             if const { lanes::fit::<T, D, B, R>() } && by_four {
                 let fits = Fits {
+                    moving: basis,
                     reconstruction,
                     cloud,
                     cells: place..place + cells.len(),
                 };
                 let mut sink = |i: usize, f| force[i - first] -= f;
-                let pass = Pass::new(basis, cloud.grid);
-                return reduced.set(pass.integrate_stress(fits, &stress, &mut sink));
+                let found =
+                    at_fixed_points!(B, basis, cloud.grid, integrate_stress(fits, &stress, &mut sink));
+                return reduced.set(found);
             }
             reconstruction.integrate_cells(cloud, place..place + cells.len(), &stress, |point, weighted| {
                 add(point, weighted, force, first);

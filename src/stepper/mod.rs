@@ -316,7 +316,7 @@ where
         if fits {
             self.cut_cells();
         }
-        if self.by_four() {
+        if self.by_four() && !R::KEEPS_FITS {
             return;
         }
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
@@ -327,12 +327,10 @@ where
             .record_virtual(self.reconstruction.virtual_cells());
     }
 
-    /// Whether fits are made and integrated for four cells at a time, so that nothing of them need be kept. A consistent
-    /// mass matrix takes them one by one.
+    /// Whether fits are made and integrated for four cells at a time, so that nothing of them need be kept.
     fn by_four(&self) -> bool {
         let can = const { !P::FLOWS && lanes::fit::<T, D, B, R>() };
-        can && self.velocity_mass == VelocityMass::Lumped
-            && self.reconstruction.line().count() <= lanes::MOST_POINTS
+        can && (1..=lanes::MOST_POINTS).contains(&self.reconstruction.line().count())
     }
 
     /// Puts the particles in the order of their cells.

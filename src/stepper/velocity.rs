@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::acceleration::Walls;
 use super::cell_sums::CellSums;
 use super::diagnostics::Sums;
-use super::lanes::{self, Acceleration, Bodies, Fits, Pass};
+use super::lanes::{self, Acceleration, Bodies, Fits, at_fixed_points};
 use super::matrix::Unknown;
 use super::spans::{Spans, share};
 use super::{Dofs, Forcing, Stepper, cloud};
@@ -15,6 +15,7 @@ use crate::grid::Grid;
 use crate::law::ConstitutiveLaw;
 use crate::mass::{VelocityMass, banded_row};
 use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, many_threads};
+use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::{Point, Reconstruction};
 use crate::scalar::Scalar;
@@ -67,7 +68,7 @@ where
             cells,
             found,
         )| {
-            if const { lanes::apply::<T, D, B>() } {
+            if const { lanes::apply_to_values::<T, D, B>() } {
                 let bodies = Bodies {
                     positions,
                     cells,
@@ -77,8 +78,13 @@ where
                     dofs: acceleration,
                     dt,
                 };
-                let pass = Pass::new(basis, grid);
-                return found.set(pass.accelerate::<false>(bodies, velocities, acceleration, &mut |_, _| ()));
+                let mut nothing = |_: usize, _| ();
+                return found.set(at_fixed_points!(
+                    B,
+                    basis,
+                    grid,
+                    accelerate::<false>(bodies, velocities, acceleration, &mut nothing)
+                ));
             }
             let mut sums = Sums::zero();
             let bodies = velocities.iter_mut().zip(masses);
@@ -127,7 +133,7 @@ where
         )| {
             let (first, momentum) = momentum.one();
             let mut sink = |i: usize, q| momentum[i - first] += q;
-            if const { lanes::apply::<T, D, B>() } {
+            if const { lanes::apply_to_values::<T, D, B>() } {
                 let bodies = Bodies {
                     positions,
                     cells,
@@ -137,8 +143,12 @@ where
                     dofs: acceleration,
                     dt,
                 };
-                let pass = Pass::new(basis, grid);
-                return found.set(pass.accelerate::<true>(bodies, velocities, acceleration, &mut sink));
+                return found.set(at_fixed_points!(
+                    B,
+                    basis,
+                    grid,
+                    accelerate::<true>(bodies, velocities, acceleration, &mut sink)
+                ));
             }
             let mut sums = Sums::zero();
             let mut momenta = CellSums::new(basis, grid);
@@ -183,16 +193,26 @@ where
         self.dofs.velocity.fill(SVector::zeros());
         let (basis, grid, momentum) = (&self.basis, &self.grid, &mut self.dofs.velocity);
         let (mass, velocity) = (&self.particles.mass, &self.particles.velocity);
-        let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
-        self.reconstruction.integrate_conserved(
-            &cloud,
-            |p| velocity[p] * mass[p],
-            |point, amount| {
-                basis.for_each(grid, &point.cell, &point.position, |i, phi, _| {
-                    momentum[i] += amount * phi;
-                });
-            },
-        );
+        if const { lanes::apply_to_values::<T, D, B>() && R::PARTICLE_MATRIX } {
+            let bodies = Bodies {
+                positions: &self.particles.position,
+                cells: self.bins.cells(),
+                masses: mass,
+            };
+            let mut sink = |i: usize, q| momentum[i] += q;
+            at_fixed_points!(B, basis, grid, sum_momenta(bodies, velocity, &mut sink));
+        } else {
+            let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
+            self.reconstruction.integrate_conserved(
+                &cloud,
+                |p| velocity[p] * mass[p],
+                |point, amount| {
+                    basis.for_each(grid, &point.cell, &point.position, |i, phi, _| {
+                        momentum[i] += amount * phi;
+                    });
+                },
+            );
+        }
         if R::PARTICLE_MATRIX {
             self.dofs.matrix.total()
         } else {
@@ -222,18 +242,7 @@ where
     #[inline(never)]
     fn map_lumped_by_four(&mut self) {
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
-        let (mass, velocity, volume) = (
-            &self.particles.mass,
-            &self.particles.velocity,
-            &self.particles.volume,
-        );
-        let density = |p: usize| {
-            let density = mass[p] / volume[p];
-            MassMomentum {
-                mass: density,
-                momentum: velocity[p] * density,
-            }
-        };
+        let density = densities(&self.particles);
         let (basis, grid, reconstruction) = (&self.basis, &self.grid, &self.reconstruction);
         let occupied = self.bins.occupied();
         let (lumped, momentum) = self.dofs.lumped_mut();
@@ -254,6 +263,7 @@ where
             let ((first, mass), (_, momentum)) = (mass.one(), momentum.one());
             let momentum = &mut momentum[..mass.len()];
             let fits = Fits {
+                moving: basis,
                 reconstruction,
                 cloud: &cloud,
                 cells: place..place + cells.len(),
@@ -262,7 +272,7 @@ where
                 mass[i - first] += m;
                 momentum[i - first] += q;
             };
-            Pass::new(basis, grid).integrate_densities(fits, &density, &mut sink);
+            at_fixed_points!(B, basis, grid, integrate_densities(fits, &density, &mut sink));
         });
         add_up(spans, scalars, lumped, 1);
         add_up(spans, vectors, momentum, 1);
@@ -270,10 +280,11 @@ where
 
     /// Momentum and mass matrix from the reconstructed densities.
     fn map_consistent(&mut self) -> T {
-        if D > 1 {
-            self.integrate_lattice();
-        } else {
-            self.integrate_band();
+        match (D > 1, const { lanes::fit::<T, D, B, R>() } && self.by_four()) {
+            (true, true) => self.integrate_lattice_by_four(),
+            (true, false) => self.integrate_lattice(),
+            (false, true) => self.integrate_band_by_four(),
+            (false, false) => self.integrate_band(),
         }
         self.dofs.matrix.complete(None);
         self.dofs.matrix.total()
@@ -297,6 +308,73 @@ where
                 pairs.add(amount.mass);
             });
         pairs.flush(matrix);
+    }
+
+    #[inline(never)]
+    fn integrate_lattice_by_four(&mut self) {
+        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
+        let density = densities(&self.particles);
+        let Dofs { matrix, velocity, .. } = &mut self.dofs;
+        matrix.clear();
+        velocity.fill(SVector::zeros());
+        let fits = Fits {
+            moving: &self.basis,
+            reconstruction: &self.reconstruction,
+            cloud: &cloud,
+            cells: 0..self.bins.occupied().len(),
+        };
+        let mut sink = |i: usize, q: SVector<T, D>| velocity[i] += q;
+        let mut pairs = |i: usize, j: usize, mass| matrix.add(i, j, mass);
+        at_fixed_points!(
+            B,
+            &self.basis,
+            &self.grid,
+            integrate_pairs(fits, &density, &mut sink, &mut pairs)
+        );
+    }
+
+    #[inline(never)]
+    fn integrate_band_by_four(&mut self) {
+        let half_band = self.dofs.matrix.band_mut().half_band();
+        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
+        let density = densities(&self.particles);
+        let (basis, grid, reconstruction) = (&self.basis, &self.grid, &self.reconstruction);
+        let occupied = self.bins.occupied();
+        let (rows, momentum) = self.dofs.band_mut();
+        let Spans {
+            cells: spans,
+            lengths,
+            matrices,
+            vectors,
+            ..
+        } = &mut self.spans;
+        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
+        let work = (
+            occupied,
+            Windows::new(spans, matrices, rows, half_band + 1),
+            Windows::new(spans, vectors, momentum, 1),
+        );
+        each_span(parallel, span, work, &|place, (cells, rows, momentum)| {
+            let ((first, rows), (_, momentum)) = (rows.one(), momentum.one());
+            let fits = Fits {
+                moving: basis,
+                reconstruction,
+                cloud: &cloud,
+                cells: place..place + cells.len(),
+            };
+            let mut sink = |i: usize, q: SVector<T, D>| momentum[i - first] += q;
+            let mut matrix = |i: usize, j: usize, mass| {
+                banded_row(rows, i - first, half_band)[half_band + j - i] += mass;
+            };
+            at_fixed_points!(
+                B,
+                basis,
+                grid,
+                integrate_pairs(fits, &density, &mut sink, &mut matrix)
+            );
+        });
+        add_up(spans, matrices, rows, half_band + 1);
+        add_up(spans, vectors, momentum, 1);
     }
 
     fn integrate_band(&mut self) {
@@ -455,6 +533,25 @@ fn amounts<'a, T: Scalar, const D: usize>(
     move |p| MassMomentum {
         mass: mass[p],
         momentum: velocity[p] * mass[p],
+    }
+}
+
+/// Densities of mass and momentum at each particle.
+fn densities<T: Scalar, const D: usize, S, Q>(
+    particles: &Particles<T, D, S, Q>,
+) -> impl Fn(usize) -> MassMomentum<T, D> + '_ {
+    let Particles {
+        mass,
+        velocity,
+        volume,
+        ..
+    } = particles;
+    move |p| {
+        let density = mass[p] / volume[p];
+        MassMomentum {
+            mass: density,
+            momentum: velocity[p] * density,
+        }
     }
 }
 

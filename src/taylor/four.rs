@@ -40,17 +40,31 @@ pub(crate) fn taylor_lanes<T: Scalar, V: Lanes<T>, const D: usize, const NB: usi
 #[derive(Clone, Copy)]
 pub(crate) struct FourSums<V, const NB: usize> {
     gram: [[V; NB]; NB],
-    right: [[V; MOST_COMPONENTS]; NB],
+    right: Rights<V, NB>,
 }
+
+/// Of each function, sums over points or coefficients, component by component.
+pub(crate) type Rights<V, const NB: usize> = [[V; MOST_COMPONENTS]; NB];
+
+/// Products of two functions, the lower half.
+pub(crate) type Products<V, const NB: usize> = [[V; NB]; NB];
 
 /// Unit triangular factor below the diagonal, one over the squares that are left on it, zero for functions left out.
 #[derive(Clone, Copy)]
-struct Factor<V, const NB: usize>([[V; NB]; NB]);
+pub(crate) struct Factor<V, const NB: usize>(pub(crate) Products<V, NB>);
+
+/// The factors of four cells.
+pub(crate) struct Factored<V, const NB: usize> {
+    pub(crate) factor: Factor<V, NB>,
+    pub(crate) hard: [bool; LANES],
+    /// Number of functions.
+    pub(crate) functions: [usize; LANES],
+}
 
 /// What became of four fits.
 pub(crate) struct FourFits<V, const NB: usize> {
     /// Coefficients of each function.
-    pub(crate) coefficients: [[V; MOST_COMPONENTS]; NB],
+    pub(crate) coefficients: Rights<V, NB>,
     pub(crate) hard: [bool; LANES],
     /// Number of functions.
     pub(crate) functions: [usize; LANES],
@@ -91,6 +105,25 @@ impl<V: Copy, const NB: usize> FourSums<V, NB> {
         }
     }
 
+    /// The same without the sums of products.
+    #[inline(always)]
+    pub(crate) fn add_values<T: Scalar>(
+        &mut self,
+        psi: &[V; NB],
+        weight: V,
+        values: &[V; MOST_COMPONENTS],
+        components: usize,
+    ) where
+        V: Lanes<T>,
+    {
+        for q in 0..components {
+            let value = values[q] * weight;
+            for i in 0..NB {
+                self.right[i][q] = value.mul_add(psi[i], self.right[i][q]);
+            }
+        }
+    }
+
     /// Takes a mean, known of each component, out of the sums.
     #[inline(always)]
     pub(crate) fn take_out<T: Scalar>(&mut self, mean: &[V; MOST_COMPONENTS], components: usize)
@@ -117,75 +150,91 @@ impl<V: Copy, const NB: usize> FourSums<V, NB> {
         V: Lanes<T>,
     {
         let zero = V::splat(T::zero());
-        let (factor, doubt, kept) = self.factorise::<T, D>(first, counts, tolerance);
-        let doubt = doubt.array();
-        let kept = kept.array();
+        let Factored {
+            factor,
+            hard,
+            functions,
+        } = factorise::<T, V, D, NB>(&self.gram, first, counts, tolerance);
         let mut coefficients = [[zero; MOST_COMPONENTS]; NB];
         for q in 0..components {
             factor.solve(first, q, &self.right, &mut coefficients);
         }
         FourFits {
             coefficients,
-            hard: doubt.map(|doubt| doubt != T::zero()),
-            functions: kept.map(|kept| kept.primal() as usize),
+            hard,
+            functions,
         }
     }
 
-    /// `L D L^T`; also how many functions are in doubt, and how many are kept.
+    /// Sums of products of the functions.
     #[inline(always)]
-    fn factorise<T: Scalar, const D: usize>(
-        &self,
-        first: usize,
-        counts: [usize; LANES],
-        tolerance: T,
-    ) -> (Factor<V, NB>, V, V)
-    where
-        V: Lanes<T>,
-    {
-        let (zero, one) = (V::splat(T::zero()), V::splat(T::one()));
-        let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
-        let share = V::splat(T::lit(GRAM_SHARE));
-        let rounding = V::splat(T::lit(ROUNDING) * T::default_epsilon());
-        let numbers = V::new(counts.map(T::count));
-        let mut l = [[zero; NB]; NB];
-        let (mut doubt, mut functions) = (zero, zero);
-        for k in first..NB {
-            let square = self.gram[k][k];
-            let mut left = square;
-            let mut row = [zero; NB];
-            for j in first..k {
-                let mut dot = self.gram[k][j];
-                for i in first..j {
-                    dot = dot - l[j][i] * row[i];
-                }
-                row[j] = dot;
-                l[k][j] = dot * l[j][j];
-                left = left - l[k][j] * dot;
+    pub(crate) fn gram(&self) -> &Products<V, NB> {
+        &self.gram
+    }
+
+    /// Sums of functions times components.
+    #[inline(always)]
+    pub(crate) fn right(&self) -> &Rights<V, NB> {
+        &self.right
+    }
+}
+
+/// `L D L^T` of four Gram matrices, with the functions from `first` on.
+#[inline(always)]
+pub(crate) fn factorise<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
+    gram: &Products<V, NB>,
+    first: usize,
+    counts: [usize; LANES],
+    tolerance: T,
+) -> Factored<V, NB> {
+    let (zero, one) = (V::splat(T::zero()), V::splat(T::one()));
+    let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
+    let share = V::splat(T::lit(GRAM_SHARE));
+    let rounding = V::splat(T::lit(ROUNDING) * T::default_epsilon());
+    let (total, numbers) = (gram[0][0], V::new(std::array::from_fn(|l| T::count(counts[l]))));
+    let mut l = [[zero; NB]; NB];
+    let (mut doubt, mut functions) = (zero, zero);
+    for k in first..NB {
+        let square = gram[k][k];
+        let mut left = square;
+        let mut row = [zero; NB];
+        for j in first..k {
+            let mut dot = gram[k][j];
+            for i in first..j {
+                dot = dot - l[j][i] * row[i];
             }
-            let least = numbers * V::splat(tolerance * tolerance * sizes[k] * sizes[k]);
-            let allowed = numbers.above(V::splat(T::count(k)));
-            let kept = left.above(least) * left.above(square * share) * allowed;
-            let seen = (left + square * rounding).above(least) * allowed;
-            doubt = doubt + (seen - kept);
-            functions = functions + kept;
-            l[k][k] = kept / (left * kept + (one - kept));
-            for j in first..k {
-                l[k][j] = l[k][j] * kept;
-            }
+            row[j] = dot;
+            l[k][j] = dot * l[j][j];
+            left = left - l[k][j] * dot;
         }
-        (Factor(l), doubt, functions)
+        let least = total * V::splat(tolerance * tolerance * sizes[k] * sizes[k]);
+        let allowed = numbers.above(V::splat(T::count(k)));
+        let kept = left.above(least) * left.above(square * share) * allowed;
+        let seen = (left + square * rounding).above(least) * allowed;
+        doubt = doubt + (seen - kept);
+        functions = functions + kept;
+        l[k][k] = kept / (left * kept + (one - kept));
+        for j in first..k {
+            l[k][j] = l[k][j] * kept;
+        }
+    }
+    let (doubt, functions) = (doubt.array(), functions.array());
+    Factored {
+        factor: Factor(l),
+        hard: std::array::from_fn(|l| doubt[l] != T::zero()),
+        functions: std::array::from_fn(|l| functions[l].primal() as usize),
     }
 }
 
 impl<V: Copy, const NB: usize> Factor<V, NB> {
     /// Coefficients of component `q` from its sums.
     #[inline(always)]
-    fn solve<T: Scalar>(
+    pub(crate) fn solve<T: Scalar>(
         &self,
         first: usize,
         q: usize,
-        right: &[[V; MOST_COMPONENTS]; NB],
-        coefficients: &mut [[V; MOST_COMPONENTS]; NB],
+        right: &Rights<V, NB>,
+        coefficients: &mut Rights<V, NB>,
     ) where
         V: Lanes<T>,
     {

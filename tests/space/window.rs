@@ -4,7 +4,7 @@
 //! Parameters: a disc that spins and flies through some 40 cells, all bases; a ball in a grid of 1e9 cells.
 //! Expected: equal bits, but for what a consistent mass is solved to; less than 1 kB for each particle.
 
-use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
+use materialpoint::basis::{BSpline, BasisFamily, DualDomain, FixedPoints, Linear};
 use materialpoint::grid::{Cell, Grid};
 use materialpoint::law::{Moduli, NeoHookean};
 use materialpoint::mass::VelocityMass;
@@ -21,7 +21,7 @@ struct Everywhere<B>(B);
 impl<const D: usize, B: BasisFamily<f64, D>> BasisFamily<f64, D> for Everywhere<B> {
     const TAKES_IN_CELLS: bool = B::TAKES_IN_CELLS;
     const WIDTH: usize = B::WIDTH;
-    const FIXED_POINTS_ALIKE: bool = B::FIXED_POINTS_ALIKE;
+    const AT_FIXED_POINTS: FixedPoints = B::AT_FIXED_POINTS;
 
     fn take_in(&mut self, grid: &Grid<f64, D>, bins: &Bins<D>) {
         self.0.take_in(grid, bins);

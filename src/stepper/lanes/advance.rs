@@ -101,7 +101,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         let dt = V::splat(motion.dt);
         let inverse = self.grid.inverse_cell_size();
         let steps: [V; D] = std::array::from_fn(|a| V::splat(motion.dt * inverse[a]));
-        let path = v.map(|v| (v * dt).array());
+        let path: [_; D] = std::array::from_fn(|c| (v[c] * dt).array());
         let gradient: [[_; D]; D] =
             std::array::from_fn(|c| std::array::from_fn(|a| (slopes[c][a] * steps[a]).array()));
         std::array::from_fn(|l| {

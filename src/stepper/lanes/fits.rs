@@ -8,6 +8,7 @@ use std::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
 use super::Pass;
+use super::pairs::PairSums;
 use super::sums::{Parts, Sums};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::field::{Field, MassMomentum};
@@ -53,7 +54,7 @@ impl<V: Copy, const D: usize> AtPoints<V, D> {
     ) where
         V: Lanes<T>,
     {
-        let kinds = cells.map(|cell| pass.kind(&cell));
+        let kinds = std::array::from_fn(|l| pass.kind(&cells[l]));
         if self.kinds != Some(kinds) {
             self.kinds = Some(kinds);
             self.compute(pass, cells, units);
@@ -93,14 +94,16 @@ impl<V: Copy, const D: usize> AtPoints<V, D> {
         });
         let along: [&Along<V>; D] = along;
         Factors {
-            value: along.map(|along| along[0]),
-            slope: along.map(|along| along[1]),
+            value: std::array::from_fn(|axis| along[axis][0]),
+            slope: std::array::from_fn(|axis| along[axis][1]),
         }
     }
 }
 
 /// What is to be integrated where.
-pub(in super::super) struct Fits<'a, 'c, T, const D: usize, R> {
+pub(in super::super) struct Fits<'a, 'c, T, const D: usize, M, R> {
+    /// The functions at points that move.
+    pub(in super::super) moving: &'a M,
     pub(in super::super) reconstruction: &'a R,
     pub(in super::super) cloud: &'a Cloud<'c, T, D>,
     /// Places in the list of occupied cells.
@@ -124,19 +127,19 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
 
     /// Hands `sink(dof, integral of stress times gradient)` what the fits through the particles' stresses add to the DOFs;
     /// returns how many cells were fitted without the full set of functions.
-    pub(in super::super) fn integrate_stress<R: Reconstruction<T, D>>(
+    pub(in super::super) fn integrate_stress<M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
-        fits: Fits<'_, '_, T, D, R>,
+        fits: Fits<'_, '_, T, D, M, R>,
         stress: &impl Fn(usize) -> SMatrix<T, D, D>,
         sink: &mut impl FnMut(usize, SVector<T, D>),
     ) -> usize {
-        with_lanes_of!(T, self.stress_in[_](fits, stress, sink))
+        with_lanes_of!(T, self.stress_in[_, _](fits, stress, sink))
     }
 
     #[inline(never)]
-    fn stress_in<V: Lanes<T>, R: Reconstruction<T, D>>(
+    fn stress_in<V: Lanes<T>, M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
-        fits: Fits<'_, '_, T, D, R>,
+        fits: Fits<'_, '_, T, D, M, R>,
         stress: &impl Fn(usize) -> SMatrix<T, D, D>,
         sink: &mut impl FnMut(usize, SVector<T, D>),
     ) -> usize {
@@ -149,62 +152,92 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
                 std::array::from_fn(|a| value[c + a * D] * inverse[a])
             })),
         };
-        self.integrate::<V, R, _>(
+        self.integrate::<false, V, _, R, _>(
             fits,
-            false,
             stress,
             &parts,
             &mut |dof, _, force| sink(dof, force),
-            &mut |_, weighted, gradient| (T::zero(), weighted * gradient),
+            &mut |_, _, _| (),
+            &|_, weighted, gradient| (T::zero(), weighted * gradient),
         )
     }
 
     /// Hands `sink(dof, mass, momentum)` what the fits through the particles' densities of both add to the DOFs.
-    pub(in super::super) fn integrate_densities<R: Reconstruction<T, D>>(
+    pub(in super::super) fn integrate_densities<M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
-        fits: Fits<'_, '_, T, D, R>,
+        fits: Fits<'_, '_, T, D, M, R>,
         density: &impl Fn(usize) -> MassMomentum<T, D>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) {
-        with_lanes_of!(T, self.densities_in[_](fits, density, sink));
+        with_lanes_of!(T, self.densities_in[_, _](fits, density, sink));
     }
 
     #[inline(never)]
-    fn densities_in<V: Lanes<T>, R: Reconstruction<T, D>>(
+    fn densities_in<V: Lanes<T>, M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
-        fits: Fits<'_, '_, T, D, R>,
+        fits: Fits<'_, '_, T, D, M, R>,
         density: &impl Fn(usize) -> MassMomentum<T, D>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) {
         let parts = |value: &[V; MOST_COMPONENTS]| Parts {
             scalar: Some(value[0]),
-            vector: Some(std::array::from_fn(|c| value[1 + c])),
-            tensor: None,
+            ..momentum_parts(value)
         };
-        self.integrate::<V, R, _>(fits, true, density, &parts, sink, &mut |phi, amount, _| {
-            (amount.mass * phi, amount.momentum * phi)
-        });
+        self.integrate::<false, V, _, R, _>(fits, density, &parts, sink, &mut |_, _, _| (), &amount_part);
     }
 
-    /// `parts` says what a value at a point adds, `part(phi, value, gradient)` the same for one DOF.
-    #[inline(always)]
-    fn integrate<V: Lanes<T>, R: Reconstruction<T, D>, Q: Field<T>>(
+    /// The same where the mass goes to the entries of the consistent matrix: `matrix(i, j, mass)`, `j <= i`.
+    pub(in super::super) fn integrate_pairs<M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
-        fits: Fits<'_, '_, T, D, R>,
-        conserve: bool,
+        fits: Fits<'_, '_, T, D, M, R>,
+        density: &impl Fn(usize) -> MassMomentum<T, D>,
+        sink: &mut impl FnMut(usize, SVector<T, D>),
+        matrix: &mut impl FnMut(usize, usize, T),
+    ) -> usize {
+        with_lanes_of!(T, self.density_pairs_in[_, _](fits, density, sink, matrix))
+    }
+
+    #[inline(never)]
+    fn density_pairs_in<V: Lanes<T>, M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
+        &self,
+        fits: Fits<'_, '_, T, D, M, R>,
+        density: &impl Fn(usize) -> MassMomentum<T, D>,
+        sink: &mut impl FnMut(usize, SVector<T, D>),
+        matrix: &mut impl FnMut(usize, usize, T),
+    ) -> usize {
+        let mut sink = |dof: usize, _, momentum| sink(dof, momentum);
+        self.integrate::<true, V, _, R, _>(fits, density, &momentum_parts, &mut sink, matrix, &amount_part)
+    }
+
+    /// `parts` says what a value at a point adds, `part(phi, value, gradient)` the same for one DOF. Densities, whose first
+    /// component is that of the mass, are conserved; with `PAIRS` their mass goes to the `matrix`.
+    #[inline(always)]
+    fn integrate<
+        const PAIRS: bool,
+        V: Lanes<T>,
+        M: BasisFamily<T, D>,
+        R: Reconstruction<T, D>,
+        Q: Field<T>,
+    >(
+        &self,
+        fits: Fits<'_, '_, T, D, M, R>,
         value: &impl Fn(usize) -> Q,
         parts: &impl Fn(&[V; MOST_COMPONENTS]) -> Parts<V, D>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
-        part: &mut impl FnMut(T, Q, SVector<T, D>) -> (T, SVector<T, D>),
+        matrix: &mut impl FnMut(usize, usize, T),
+        part: &impl Fn(T, Q, SVector<T, D>) -> (T, SVector<T, D>),
     ) -> usize {
         let Fits {
+            moving,
             reconstruction,
             cloud,
             cells,
         } = fits;
+        let conserve = Q::DENSITIES != 0;
         let (points, units) = line::<T, V>(reconstruction.line());
         let mut functions = AtPoints::<V, D>::new(points);
         let mut sums = Sums::<V, D>::new();
+        let mut pairs = PairSums::<V, D>::new();
         let occupied = cloud.bins.occupied();
         let mut reduced = 0;
         for first in cells.clone().step_by(LANES) {
@@ -219,18 +252,40 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
                 conserve,
                 value,
                 #[inline(always)]
-                |number, value| sums.add_to::<false, T, B>(self, &functions.at(number), &parts(value)),
+                |number, value| {
+                    let factors = functions.at(number);
+                    sums.add_to::<false, T, B>(self, &factors, &parts(value));
+                    if PAIRS {
+                        pairs.add_to::<T, B>(&factors, value[0]);
+                    }
+                },
             );
             reduced += outcome.reduced;
             sums.spread(self, &four[..places.len()], &outcome.hard, sink);
+            if PAIRS {
+                pairs.spread(self, &four[..places.len()], &outcome.hard, matrix);
+            }
             let hard = places.zip(outcome.hard).filter(|&(_, hard)| hard);
             for (place, _) in hard {
                 let cell = occupied[place] as usize;
                 let add = |point: &Point<T, D>, value| {
                     let (cell, x) = (&point.cell, &point.position);
-                    self.basis.for_each(self.grid, cell, x, |dof, phi, gradient| {
+                    if point.moves {
+                        return moving.for_each(self.grid, cell, x, |i, phi, gradient| {
+                            let (scalar, vector) = part(phi, value, gradient);
+                            sink(i, scalar, vector);
+                        });
+                    }
+                    self.basis.for_each(self.grid, cell, x, |i, phi, gradient| {
                         let (scalar, vector) = part(phi, value, gradient);
-                        sink(dof, scalar, vector);
+                        sink(i, scalar, vector);
+                        if PAIRS {
+                            self.basis.for_each(self.grid, cell, x, |j, other, _| {
+                                if j <= i {
+                                    matrix(i, j, scalar * other);
+                                }
+                            });
+                        }
                     });
                 };
                 let full = reconstruction.integrate_hard(cloud, cell, conserve, value, add);
@@ -239,6 +294,26 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         }
         reduced
     }
+}
+
+/// What a mass and a momentum add to the momenta of the DOFs.
+#[inline(always)]
+fn momentum_parts<V: Copy, const D: usize>(value: &[V; MOST_COMPONENTS]) -> Parts<V, D> {
+    Parts {
+        scalar: None,
+        vector: Some(std::array::from_fn(|c| value[1 + c])),
+        tensor: None,
+    }
+}
+
+/// What a mass and a momentum add to those of one DOF.
+#[inline(always)]
+fn amount_part<T: Scalar, const D: usize>(
+    phi: T,
+    amount: MassMomentum<T, D>,
+    _gradient: SVector<T, D>,
+) -> (T, SVector<T, D>) {
+    (amount.mass * phi, amount.momentum * phi)
 }
 
 /// Number and coordinates from 0 to 1 of points given by theirs from -1 to 1.

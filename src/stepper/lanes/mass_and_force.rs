@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::pairs::PairSums;
 use super::sums::{Parts, Sums};
 use super::{Group, Pass, tensors};
 use crate::basis::BasisFamily;
@@ -41,6 +42,66 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
             p += group.count;
         }
         sums.flush(self, true, &mut sink);
+    }
+
+    /// Hands `matrix(i, j, mass)`, `j <= i`, what the particles add to the entries of the consistent mass matrix.
+    pub(in super::super) fn sum_pairs(
+        &self,
+        bodies: Bodies<'_, T, D>,
+        matrix: &mut impl FnMut(usize, usize, T),
+    ) {
+        with_lanes_of!(T, self.pairs_in(bodies, matrix));
+    }
+
+    #[inline(never)]
+    fn pairs_in<V: Lanes<T>>(&self, bodies: Bodies<'_, T, D>, matrix: &mut impl FnMut(usize, usize, T)) {
+        let mut sums = PairSums::<V, D>::new();
+        let mut p = 0;
+        while p < bodies.cells.len() {
+            let group = Group::at(p, bodies.cells);
+            let cell = &bodies.cells[p];
+            let factors = self.factors(cell, &group.vectors::<T, V, D>(bodies.positions));
+            sums.add(self, cell, &factors, group.amounts(bodies.masses), matrix);
+            p += group.count;
+        }
+        sums.flush(self, matrix);
+    }
+
+    /// Hands `sink(dof, momentum)` what the particles add to the DOFs.
+    pub(in super::super) fn sum_momenta(
+        &self,
+        bodies: Bodies<'_, T, D>,
+        velocities: &[SVector<T, D>],
+        sink: &mut impl FnMut(usize, SVector<T, D>),
+    ) {
+        with_lanes_of!(T, self.momenta_in(bodies, velocities, sink));
+    }
+
+    #[inline(never)]
+    fn momenta_in<V: Lanes<T>>(
+        &self,
+        bodies: Bodies<'_, T, D>,
+        velocities: &[SVector<T, D>],
+        sink: &mut impl FnMut(usize, SVector<T, D>),
+    ) {
+        let mut sums = Sums::<V, D>::new();
+        let mut sink = |i: usize, _, q| sink(i, q);
+        let mut p = 0;
+        while p < bodies.cells.len() {
+            let group = Group::at(p, bodies.cells);
+            let cell = &bodies.cells[p];
+            let factors = self.factors(cell, &group.vectors::<T, V, D>(bodies.positions));
+            let mass = group.amounts::<T, V>(bodies.masses);
+            let velocities = group.vectors::<T, V, D>(velocities);
+            let parts = Parts {
+                scalar: None,
+                vector: Some(std::array::from_fn(|c| velocities[c] * mass)),
+                tensor: None,
+            };
+            sums.add(self, cell, &factors, &parts, &mut sink);
+            p += group.count;
+        }
+        sums.flush(self, false, &mut sink);
     }
 
     /// Hands `sink(dof, mass, integral of stress times gradient)` what the particles add to the DOFs; `stress` says what the

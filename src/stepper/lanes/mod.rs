@@ -12,6 +12,7 @@
 mod advance;
 mod fits;
 mod mass_and_force;
+mod pairs;
 mod rows;
 mod sums;
 mod velocity;
@@ -23,7 +24,7 @@ pub(super) use velocity::Acceleration;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::basis::{BasisFamily, Factors};
+use crate::basis::{BasisFamily, Factors, FixedPoints};
 use crate::grid::{Cell, Grid};
 use crate::lanes::{LANES, Lanes};
 use crate::reconstruction::Reconstruction;
@@ -31,12 +32,22 @@ use crate::scalar::Scalar;
 
 /// Whether the passes go this way. In one dimension there is little to share along the axes.
 pub(super) const fn apply<T: Scalar, const D: usize, B: BasisFamily<T, D>>() -> bool {
-    D > 1 && B::WIDTH > 0
+    B::WIDTH > 0
+}
+
+/// Whether those go this way that want no gradients.
+pub(super) const fn apply_to_values<T: Scalar, const D: usize, B: BasisFamily<T, D>>() -> bool {
+    apply::<T, D, B>() || matches!(B::AT_FIXED_POINTS, FixedPoints::Linear)
 }
 
 /// Whether fits can be integrated over four cells at a time.
 pub(super) const fn fit<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>>() -> bool {
-    apply::<T, D, B>() && R::BY_FOUR && B::FIXED_POINTS_ALIKE
+    R::BY_FOUR
+        && match B::AT_FIXED_POINTS {
+            FixedPoints::Alike => apply::<T, D, B>(),
+            FixedPoints::Linear => true,
+            FixedPoints::Other => false,
+        }
 }
 
 /// Particles of one cell that follow each other, at most [`LANES`].
@@ -130,3 +141,16 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'a, T, D, B> {
         self.basis.factors(self.grid, cell, &self.unit(cell, x))
     }
 }
+
+/// Calls `$method` of the pass over the functions that a basis has at fixed points; their values are those at points that move
+/// too where [`apply_to_values`].
+macro_rules! at_fixed_points {
+    ($basis:ty, $value:expr, $grid:expr, $method:ident $(::<$map:literal>)? ( $($argument:expr),* $(,)? )) => {
+        if const { matches!(<$basis>::AT_FIXED_POINTS, $crate::basis::FixedPoints::Linear) } {
+            $crate::stepper::lanes::Pass::new(&$crate::basis::Linear, $grid).$method $(::<$map>)? ($($argument),*)
+        } else {
+            $crate::stepper::lanes::Pass::new($value, $grid).$method $(::<$map>)? ($($argument),*)
+        }
+    };
+}
+pub(super) use at_fixed_points;

@@ -84,10 +84,16 @@ impl<V: Copy, const D: usize> Sums<V, D> {
             let (_, k) = pass.row(row);
             let across = Pass::<T, D, B>::across(factors, k);
             let scalar = parts.scalar.map(|m| m * across.value);
-            let vector = parts.vector.map(|q| q.map(|q| q * across.value));
-            let tensor = parts.tensor.map(|t| {
-                t.map(|t| {
-                    let mut sides = t[1] * across.slope[0];
+            let vector = parts
+                .vector
+                .map(|q| -> [V; D] { std::array::from_fn(|c| q[c] * across.value) });
+            let tensor = parts.tensor.map(|tensor| -> [(V, V); D] {
+                std::array::from_fn(|c| {
+                    let t = &tensor[c];
+                    let mut sides = zero;
+                    if D > 1 {
+                        sides = t[1] * across.slope[0];
+                    }
                     if D == 3 {
                         sides = t[D - 1].mul_add(across.slope[1], sides);
                     }
@@ -110,7 +116,9 @@ impl<V: Copy, const D: usize> Sums<V, D> {
                     if let Some(part) = tensor {
                         let (along, sides) = part[c];
                         sum = along.mul_add(factors.slope[0][i], sum);
-                        sum = sides.mul_add(factors.value[0][i], sum);
+                        if D > 1 {
+                            sum = sides.mul_add(factors.value[0][i], sum);
+                        }
                     }
                     self.vector[place][c] = sum;
                 }
@@ -137,7 +145,7 @@ impl<V: Copy, const D: usize> Sums<V, D> {
             for i in 0..B::WIDTH {
                 let place = row * B::WIDTH + i;
                 let scalar = self.scalar[place].array();
-                let vector = self.vector[place].map(V::array);
+                let vector: [[T; LANES]; D] = std::array::from_fn(|c| self.vector[place][c].array());
                 for l in 0..cells.len().min(LANES) {
                     if !left_out[l] {
                         let part = SVector::from_fn(|c, _| vector[c][l]);

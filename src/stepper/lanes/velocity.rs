@@ -90,12 +90,12 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
             let a = self.value(self.first_dof(cell), &factors, acceleration.dofs);
             let before = group.vectors::<T, V, D>(velocities);
             let after: [V; D] = std::array::from_fn(|c| a[c].mul_add(dt, before[c]));
-            let lanes = after.map(V::array);
+            let lanes: [_; D] = std::array::from_fn(|c| after[c].array());
             for (l, v) in velocities[p..p + group.count].iter_mut().enumerate() {
                 *v = SVector::from_fn(|c, _| lanes[c][l]);
             }
             let mass = group.amounts::<T, V>(bodies.masses);
-            let q = after.map(|v| v * mass);
+            let q: [V; D] = std::array::from_fn(|c| after[c] * mass);
             let mut square = q[0] * q[0];
             for c in 0..D {
                 momentum[c] = momentum[c] + q[c];
