@@ -1,148 +1,161 @@
-//! The fits of each cell: of its own particles, and with those of its neighbours.
+//! Cells that are not fitted four at a time: those that end within themselves, and those whose particles are hard to tell apart.
 
 use crate::field::Field;
 use crate::reconstruction::taylor::local;
 use crate::reconstruction::{Cloud, Filling, Patch};
 use crate::scalar::Scalar;
-use crate::taylor::{CellFit, Gram};
+use crate::taylor::{CellFit, Gram, shift_sums};
 
 use super::filling::{FULL, OpenSides, borders_on_nothing, is_full, reach};
+use super::four::KeptSums;
 
-/// The fits of one occupied cell.
-#[derive(Clone, Debug)]
-pub(super) struct RelaxedCell<T, const D: usize, const NB: usize> {
-    /// The whole cell: the frame of sums that neighbours exchange, and of the wide fit.
-    pub(super) whole: Patch<T, D>,
-    /// What the surface of a body leaves of it: the frame of its own fit, and what is integrated over.
-    pub(super) patch: Patch<T, D>,
-    pub(super) own: CellFit<T, NB>,
-    /// With the particles of the neighbours; none where even they do not tell the functions apart.
-    pub(super) wide: Option<CellFit<T, NB>>,
-    open: bool,
+/// How an occupied cell is fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// With three others.
+    Four,
+    /// Alone, because a surface cuts it or its particles leave it in doubt what they tell.
+    Alone,
+    /// Not at all: material ends within it on any slant, beyond one dimension. Its particles are the points of its force, and are
+    /// left as they are.
+    Open,
+}
+
+/// What is kept of an occupied cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RelaxedCell {
+    pub(super) kind: Kind,
     /// Beyond one dimension; always full in one, where weak DOFs are lumped.
     pub(super) filling: Filling,
-    /// Sums of the own particles, in the frame of the whole cell.
-    gram: Gram<T, NB>,
+    /// Whether its own particles determine all functions.
+    pub(super) is_full: bool,
 }
 
-impl<T: Scalar, const D: usize, const NB: usize> RelaxedCell<T, D, NB> {
-    /// The cell with number `cell`, of its own particles only.
-    #[inline(always)]
-    pub(super) fn alone(cloud: &Cloud<'_, T, D>, cell: usize, tolerance: T) -> Self {
-        let (whole, patch) = (Patch::whole(cloud.grid, cell), cloud.patch(cell));
-        let points = |frame| local(cloud, cell, frame).map(|(_, s)| (s, T::one()));
-        let gram = Gram::new(points(&whole));
-        let own = if patch == whole {
-            CellFit::with_gram(&gram, points(&whole), 0, tolerance)
-        } else {
-            CellFit::weighted(points(&patch), 0, tolerance)
-        };
+impl RelaxedCell {
+    /// Of no particles.
+    pub(super) fn none() -> Self {
         Self {
-            whole,
-            patch,
-            own,
-            wide: None,
-            open: false,
-            filling: Filling::Full,
-            gram,
+            kind: Kind::Open,
+            filling: Filling::Few,
+            is_full: false,
         }
     }
 
-    /// Cuts the cell on its `open` sides, beyond which there are no particles, to where its particles end.
-    fn end_where_particles_end(&mut self, cloud: &Cloud<'_, T, D>, open: &OpenSides<D>, tolerance: T) {
-        let mut patch = self.whole;
-        for (axis, sides) in open.iter().enumerate() {
-            let half = patch.half[axis];
-            let ends = |above: bool| {
-                let reach = reach(cloud, &self.whole, axis, above);
-                let share = if sides[usize::from(above)] && reach < T::lit(FULL) {
-                    reach
-                } else {
-                    T::one()
-                };
-                half * share
-            };
-            let (low, high) = (ends(false), ends(true));
-            if low + high > T::zero() {
-                patch.centre[axis] += (high - low) / T::lit(2.0);
-                patch.half[axis] = (low + high) / T::lit(2.0);
-                patch.inverse_half[axis] = T::one() / patch.half[axis];
-            }
-        }
-        if patch != self.whole {
-            let points = local(cloud, cloud.grid.linear(&patch.cell), &patch).map(|(_, s)| (s, T::one()));
-            self.own = CellFit::weighted(points, 0, tolerance);
-            self.patch = patch;
-        }
-    }
-
-    /// Takes in that there are no particles beyond the `open` sides.
-    #[cold]
-    #[inline(never)]
-    fn end_at(&mut self, cloud: &Cloud<'_, T, D>, open: &OpenSides<D>, tolerance: T) {
-        let borders_on_nothing = borders_on_nothing(cloud, &self.whole, open);
-        if D > 1 && borders_on_nothing {
-            self.open = !is_full(cloud, &self.whole);
-        } else {
-            self.end_where_particles_end(cloud, open, tolerance);
-        }
-        if D > 1 && (self.open || self.patch != self.whole) {
-            self.filling = if self.is_full() {
-                Filling::Part
-            } else {
-                Filling::Few
-            };
-        }
-    }
-
-    /// Whether material ends within it on any slant, beyond one dimension. Its particles are then the points of its force, and are
-    /// left as they are.
+    /// The cell with number `cell`, whose own fit is full or in doubt, and which has no neighbours on its `open` sides.
     #[inline(always)]
-    pub(super) fn is_open(&self) -> bool {
-        self.open
-    }
-
-    /// Whether its own particles determine all functions.
-    #[inline(always)]
-    pub(super) fn is_full(&self) -> bool {
-        self.own.functions() == NB
-    }
-
-    /// Coefficients of the own fit, from the sums in the frame of the whole cell where they serve.
-    #[inline(always)]
-    pub(super) fn own_coefficients<Q: Field<T>>(
-        &self,
+    pub(super) fn new<T: Scalar, const D: usize, const NB: usize>(
         cloud: &Cloud<'_, T, D>,
         cell: usize,
-        sums: [Q; NB],
-        value: impl Fn(usize) -> Q,
-    ) -> [Q; NB] {
-        if self.own.is_well_spread() && self.patch == self.whole {
-            return self.own.coefficients_from_sums(sums);
+        open: &OpenSides<D>,
+        [own_is_full, own_is_hard]: [bool; 2],
+        tolerance: T,
+    ) -> Self {
+        if cloud.cuts.is_empty() && *open == [[false; 2]; D] && !own_is_hard {
+            return Self {
+                kind: Kind::Four,
+                filling: Filling::Full,
+                is_full: own_is_full,
+            };
         }
-        let samples = local(cloud, cell, &self.patch).map(|(p, s)| (s, T::one(), value(p)));
-        self.own.coefficients(samples, Q::zero())
+        Self::apart::<T, D, NB>(cloud, cell, open, [own_is_full, own_is_hard], tolerance)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn apart<T: Scalar, const D: usize, const NB: usize>(
+        cloud: &Cloud<'_, T, D>,
+        cell: usize,
+        open: &OpenSides<D>,
+        [own_is_full, own_is_hard]: [bool; 2],
+        tolerance: T,
+    ) -> Self {
+        let (whole, patch) = (Patch::whole(cloud.grid, cell), ended_patch(cloud, cell, open));
+        let is_open = D > 1 && borders_on_nothing(cloud, &whole, open) && !is_full(cloud, &whole);
+        let kind = match (is_open, own_is_hard || patch != whole) {
+            (true, _) => Kind::Open,
+            (false, true) => Kind::Alone,
+            (false, false) => Kind::Four,
+        };
+        let is_full = if patch != whole || own_is_hard {
+            own_fit::<T, D, NB>(cloud, cell, &patch, tolerance).functions() == NB
+        } else {
+            own_is_full
+        };
+        let ends_within = D > 1 && (is_open || patch != whole);
+        let filling = match (ends_within, is_full) {
+            (false, _) => Filling::Full,
+            (true, true) => Filling::Part,
+            (true, false) => Filling::Few,
+        };
+        Self {
+            kind,
+            filling,
+            is_full,
+        }
     }
 }
 
-/// Makes the wide fits.
-pub(super) fn join<T: Scalar, const D: usize, const NB: usize>(
-    cells: &mut [RelaxedCell<T, D, NB>],
+/// What surfaces, or the ends of the particles on `open` sides, leave of the cell with number `cell`. Beyond one dimension a cell
+/// that borders on nothing stays whole.
+pub(super) fn ended_patch<T: Scalar, const D: usize>(
     cloud: &Cloud<'_, T, D>,
-    tolerance: T,
-) {
-    for place in 0..cells.len() {
-        let (mut gram, mut open) = (cells[place].gram, [[true; 2]; D]);
-        cloud
-            .bins
-            .for_each_neighbour(cloud.grid, place, |axis, above, other| {
-                gram.add_neighbour::<D>(&cells[other].gram, axis, above);
-                open[axis][usize::from(above)] = false;
-            });
-        let cell = &mut cells[place];
-        cell.wide = CellFit::full::<D>(&gram, tolerance);
-        if open != [[false; 2]; D] && cell.patch == cell.whole {
-            cell.end_at(cloud, &open, tolerance);
+    cell: usize,
+    open: &OpenSides<D>,
+) -> Patch<T, D> {
+    let (whole, mut patch) = (Patch::whole(cloud.grid, cell), cloud.patch(cell));
+    if patch != whole || D > 1 && borders_on_nothing(cloud, &whole, open) {
+        return patch;
+    }
+    for (axis, sides) in open.iter().enumerate() {
+        let half = patch.half[axis];
+        let ends = |above: bool| {
+            let reach = reach(cloud, &whole, axis, above);
+            let ends = sides[usize::from(above)] && reach < T::lit(FULL);
+            half * if ends { reach } else { T::one() }
+        };
+        let (low, high) = (ends(false), ends(true));
+        if low + high > T::zero() {
+            patch.centre[axis] += (high - low) / T::lit(2.0);
+            patch.half[axis] = (low + high) / T::lit(2.0);
+            patch.inverse_half[axis] = T::one() / patch.half[axis];
         }
     }
+    patch
+}
+
+/// The fit through the own particles, in the frame of `patch`.
+pub(super) fn own_fit<T: Scalar, const D: usize, const NB: usize>(
+    cloud: &Cloud<'_, T, D>,
+    cell: usize,
+    patch: &Patch<T, D>,
+    tolerance: T,
+) -> CellFit<T, NB> {
+    let points = local(cloud, cell, patch).map(|(_, s)| (s, T::one()));
+    CellFit::weighted(points, 0, tolerance)
+}
+
+/// Coefficients of the fit through the particles of the cell at `place` and of its neighbours, in the frame of the whole cell;
+/// none where they do not tell all functions apart.
+pub(super) fn wide_coefficients<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
+    cloud: &Cloud<'_, T, D>,
+    place: usize,
+    sums: &KeptSums<'_, T>,
+    tolerance: T,
+) -> Option<[Q; NB]> {
+    let number = |place: usize| cloud.bins.occupied()[place] as usize;
+    let gram_of = |place: usize| {
+        let cell = number(place);
+        let whole = Patch::whole(cloud.grid, cell);
+        Gram::<T, NB>::new(local(cloud, cell, &whole).map(|(_, s)| (s, T::one())))
+    };
+    let (mut gram, mut right) = (gram_of(place), sums.of_cell::<Q, NB>(place));
+    cloud
+        .bins
+        .for_each_neighbour(cloud.grid, place, |axis, above, other| {
+            gram.add_neighbour::<D>(&gram_of(other), axis, above);
+            let mut theirs = sums.of_cell::<Q, NB>(other);
+            shift_sums::<T, D, NB, Q>(&mut theirs, axis, above);
+            (0..NB).for_each(|k| right[k].add_scaled(T::one(), theirs[k]));
+        });
+    CellFit::full::<D>(&gram, tolerance).map(|wide| wide.coefficients_from_sums(right))
 }

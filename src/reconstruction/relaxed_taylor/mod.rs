@@ -2,16 +2,27 @@
 
 mod cells;
 mod filling;
+mod four;
+mod geometry;
+mod pull;
+mod relax;
+mod stream;
 
 use std::ops::Range;
 
-use super::gauss::{GaussRule, polynomial};
-use super::taylor::local;
-use super::{Cloud, Filling, Point, Reconstruction, Shepard};
+use super::gauss::GaussRule;
+use super::{Cloud, Filling, Four, Point, Reconstruction, Shepard};
 use crate::field::Field;
+use crate::lanes::{LANES, Lanes, with_lanes_of};
+use crate::parallel::CELLS;
 use crate::scalar::Scalar;
-use crate::taylor::{CellFit, default_tolerance, shift_sums, taylor_functions};
-use cells::RelaxedCell;
+use crate::taylor::{MOST_COMPONENTS, default_tolerance};
+use cells::{Kind, RelaxedCell};
+use four::{FourFits, KeptProducts};
+use pull::Pulls;
+
+/// Groups of four cells in a span.
+const GROUPS: usize = CELLS / LANES;
 
 /// Wave speeds in neighbouring cells that differ by more than this factor are those of two materials.
 const ALIKE: f64 = 2.0;
@@ -86,9 +97,13 @@ pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {
     rule: GaussRule<T, D, NB>,
     tolerance: T,
     relaxation: Relaxation<T>,
-    cells: Vec<RelaxedCell<T, D, NB>>,
-    /// Sums of the Taylor functions times the values over the particles of each cell, component by component.
-    sums: Vec<T>,
+    cells: Vec<RelaxedCell>,
+    /// Sums of products of the functions over the particles, four cells each.
+    grams: Vec<KeptProducts<T, NB>>,
+    fits: Vec<FourFits<T, D, NB>>,
+    /// Sums of the functions times the components of a field ([`KeptSums`]).
+    sums: Vec<[T; LANES]>,
+    pulls: Pulls<T>,
     reduced: usize,
 }
 
@@ -100,7 +115,10 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             tolerance: default_tolerance(D),
             relaxation: Relaxation::in_dimensions(D),
             cells: Vec::new(),
+            grams: Vec::new(),
+            fits: Vec::new(),
             sums: Vec::new(),
+            pulls: Pulls::none(),
             reduced: 0,
         }
     }
@@ -119,169 +137,19 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         self
     }
 
-    /// Numbers and fits of the occupied cells, ascending.
-    fn each_cell(&self, cloud: &Cloud<'_, T, D>) -> impl Iterator<Item = (usize, &RelaxedCell<T, D, NB>)> {
-        cloud.bins.occupied().iter().map(|&c| c as usize).zip(&self.cells)
-    }
-
-    /// Coefficients of the wide fit of the cell at `place`, from the particles themselves.
-    fn wide_coefficients<Q: Field<T>>(
-        &self,
-        cloud: &Cloud<'_, T, D>,
-        place: usize,
-        wide: &CellFit<T, NB>,
-        value: &impl Fn(usize) -> Q,
-    ) -> [Q; NB] {
-        let frame = &self.cells[place].whole;
-        let mut sums = [Q::zero(); NB];
-        let mut add = |place: usize| {
-            for (p, s) in local(cloud, cloud.bins.occupied()[place] as usize, frame) {
-                let psi = taylor_functions::<T, D, NB>(&s);
-                let value = value(p);
-                (0..NB).for_each(|k| sums[k].add_scaled(psi[k], value));
-            }
-        };
-        add(place);
-        cloud
-            .bins
-            .for_each_neighbour(cloud.grid, place, |_, _, other| add(other));
-        wide.coefficients_from_sums(sums)
-    }
-
-    /// Sums over the particles of every cell of the functions of the whole cell times the values.
-    fn sum_values<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, values: &[Q]) {
+    /// Makes room for all cells there are, so that a later step never has to allocate.
+    fn reserve(&mut self, cells: usize) {
+        let groups = cells.div_ceil(LANES);
+        self.cells.clear();
+        self.cells.reserve(cells);
+        self.grams.clear();
+        self.grams.reserve(groups);
+        self.fits.clear();
+        self.fits.reserve(groups);
         self.sums.clear();
-        let occupied = cloud.bins.occupied().iter();
-        for (&cell, fits) in occupied.zip(&self.cells) {
-            let mut sums = [Q::zero(); NB];
-            for (p, s) in local(cloud, cell as usize, &fits.whole) {
-                let psi = taylor_functions::<T, D, NB>(&s);
-                (0..NB).for_each(|k| sums[k].add_scaled(psi[k], values[p]));
-            }
-            for sum in &sums {
-                self.sums.extend((0..Q::COMPONENTS).map(|i| sum.component(i)));
-            }
-        }
+        self.sums.reserve(groups * NB * D * D);
+        self.pulls.reserve(cells, NB * D * D);
     }
-
-    /// The sums of [`RelaxedTaylor::sum_values`] of the cell at `place`.
-    #[inline(always)]
-    fn summed<Q: Field<T>>(&self, place: usize) -> [Q; NB] {
-        let first = place * NB * Q::COMPONENTS;
-        std::array::from_fn(|k| {
-            let mut sum = Q::zero();
-            for i in 0..Q::COMPONENTS {
-                sum.set_component(i, self.sums[first + k * Q::COMPONENTS + i]);
-            }
-            sum
-        })
-    }
-
-    /// Moves the values towards the fits of their own cell and through its neighbours.
-    fn relax_towards_both<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, crossed: &[T], values: &mut [Q]) {
-        self.sum_values(cloud, values);
-        for (place, (cell, fits)) in self.each_cell(cloud).enumerate() {
-            let mut sums = self.summed::<Q>(place);
-            let seen = fits.own_coefficients(cloud, cell, sums, |p| values[p]);
-            let [mut slowest, mut fastest] = [crossed[place]; 2];
-            cloud
-                .bins
-                .for_each_neighbour(cloud.grid, place, |axis, above, other| {
-                    slowest = slowest.min(crossed[other]);
-                    fastest = fastest.max(crossed[other]);
-                    let mut theirs = self.summed::<Q>(other);
-                    shift_sums::<T, D, NB, Q>(&mut theirs, axis, above);
-                    (0..NB).for_each(|k| sums[k].add_scaled(T::one(), theirs[k]));
-                });
-            // Stress may jump where the material changes.
-            let alike = fastest <= slowest * T::lit(ALIKE);
-            let wide = fits
-                .wide
-                .filter(|_| alike)
-                .map(|wide| wide.coefficients_from_sums(sums));
-            let [own, neighbours] = self.relaxation.shares(crossed[place]);
-            if fits.is_open() {
-                continue;
-            }
-            for (p, s) in local(cloud, cell, &fits.patch) {
-                let old = values[p];
-                values[p].add_scaled(own, difference(&s, &seen, old));
-                if let Some(wide) = &wide {
-                    let s = fits.whole.local(&cloud.positions[p]);
-                    values[p].add_scaled(neighbours, difference(&s, wide, old));
-                }
-            }
-        }
-    }
-
-    /// Moves the values towards the weighted fit of their own cell.
-    fn relax_towards_own<Q: Field<T>>(
-        &self,
-        cloud: &Cloud<'_, T, D>,
-        weights: &[T],
-        crossed: &[T],
-        values: &mut [Q],
-    ) {
-        for ((cell, fits), &crossed) in self.each_cell(cloud).zip(crossed) {
-            if fits.is_open() {
-                continue;
-            }
-            let [share, _] = self.relaxation.shares(crossed);
-            let weight = weights[first(cloud, cell)];
-            let equal = local(cloud, cell, &fits.patch).all(|(p, _)| weights[p] == weight);
-            let samples = local(cloud, cell, &fits.patch);
-            // Equal weights make the fit that is there already.
-            let seen = if equal {
-                let samples = samples.map(|(p, s)| (s, T::one(), values[p]));
-                fits.own.coefficients(samples, Q::zero())
-            } else {
-                let points = samples.clone().map(|(p, s)| (s, weights[p]));
-                let samples = samples.map(|(p, s)| (s, weights[p], values[p]));
-                CellFit::weighted(points, 0, self.tolerance).coefficients(samples, Q::zero())
-            };
-            for (p, s) in local(cloud, cell, &fits.patch) {
-                let unseen = difference(&s, &seen, values[p]);
-                values[p].add_scaled(share, unseen);
-            }
-        }
-    }
-}
-
-/// What takes the `value` at `s` to the polynomial.
-#[inline(always)]
-fn difference<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
-    s: &nalgebra::SVector<T, D>,
-    coefficients: &[Q; NB],
-    value: Q,
-) -> Q {
-    let mut difference = polynomial(&taylor_functions(s), coefficients);
-    difference.add_scaled(-T::one(), value);
-    difference
-}
-
-/// Streams the values at the particles of a cell.
-#[inline(always)]
-fn emit_particles<T: Scalar, const D: usize, Q: Field<T>>(
-    cloud: &Cloud<'_, T, D>,
-    cell: usize,
-    value: &impl Fn(usize) -> Q,
-    sink: &mut impl FnMut(&Point<T, D>, Q),
-) {
-    for &p in cloud.bins.particles_in(cell) {
-        let p = p as usize;
-        let point = Point {
-            cell: *cloud.bins.cell_of(p),
-            position: cloud.positions[p],
-            moves: true,
-        };
-        sink(&point, value(p).scaled(cloud.volumes[p]));
-    }
-}
-
-/// First particle of an occupied cell.
-#[inline(always)]
-fn first<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: usize) -> usize {
-    cloud.bins.particles_in(cell).first().map_or(0, |&p| p as usize)
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for RelaxedTaylor<T, D, NB> {
@@ -291,18 +159,13 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     const BY_CELLS: bool = true;
     const RELAXES: bool = true;
 
+    const BY_FOUR: bool = true;
+    const KEEPS_FITS: bool = true;
+
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
-        let count = cloud.grid.cell_count();
-        // One slot for each cell there is, so that a later step never has to allocate.
-        self.cells.reserve(count - self.cells.len().min(count));
-        self.sums.clear();
-        self.sums.reserve(count * NB * D * D);
-        self.cells.clear();
-        let occupied = cloud.bins.occupied().iter();
-        self.cells
-            .extend(occupied.map(|&cell| RelaxedCell::alone(cloud, cell as usize, self.tolerance)));
-        cells::join(&mut self.cells, cloud, self.tolerance);
-        let reduced = |fits: &&RelaxedCell<T, D, NB>| !fits.is_open() && !fits.is_full();
+        self.reserve(cloud.grid.cell_count());
+        self.take_in_geometry(cloud);
+        let reduced = |cell: &&RelaxedCell| cell.kind != Kind::Open && !cell.is_full;
         self.reduced = self.cells.iter().filter(reduced).count();
     }
 
@@ -313,7 +176,13 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         value: impl Fn(usize) -> Q,
         sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        self.integrate_cells(cloud, 0..self.cells.len(), value, sink);
+        let values: Vec<Q> = (0..cloud.positions.len()).map(value).collect();
+        self.take_in_field(cloud, &|p| values[p]);
+        self.integrate_cells(cloud, 0..self.cells.len(), |p| values[p], sink);
+    }
+
+    fn take_in_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Fn(usize) -> Q + Sync)) {
+        self.sum_field(cloud, value);
     }
 
     #[inline(always)]
@@ -334,29 +203,47 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         value: impl Fn(usize) -> Q,
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        let numbers = cloud.bins.occupied()[cells.clone()].iter();
-        for (place, (&cell, fits)) in cells.clone().zip(numbers.zip(&self.cells[cells])) {
-            if fits.is_open() {
-                emit_particles(cloud, cell as usize, &value, &mut sink);
-                continue;
-            }
-            let samples = local(cloud, cell as usize, &fits.patch).map(|(p, s)| (s, T::one(), value(p)));
-            let coefficients = match &fits.wide {
-                Some(wide) if !fits.is_full() => {
-                    // What the neighbours see, and on top of it what the own particles see beside that.
-                    let seen = self.wide_coefficients(cloud, place, wide, &value);
-                    self.rule
-                        .emit_in_frame(&fits.patch, &fits.whole, &seen, &mut sink);
-                    let rest = samples.map(|(s, weight, value)| {
-                        let s_whole = fits.whole.local(&fits.patch.position(&s));
-                        (s, weight, difference(&s_whole, &seen, value).scaled(-T::one()))
-                    });
-                    fits.own.coefficients(rest, Q::zero())
-                }
-                _ => fits.own.coefficients(samples, Q::zero()),
-            };
-            self.rule.emit(&fits.patch, &coefficients, &mut sink);
+        with_lanes_of!(T, self.integrate_in[Q](cloud, cells, &value, &mut sink));
+    }
+
+    fn line(&self) -> impl Iterator<Item = T> {
+        self.rule.line()
+    }
+
+    #[inline(always)]
+    fn integrate_four<V: Lanes<T>, Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        _conserve: bool,
+        _value: &impl Fn(usize) -> Q,
+        mut sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+    ) -> Four {
+        let coefficients = self.integrated::<V, Q>(cells.start / LANES);
+        let volume = cloud.grid.cell_volume();
+        self.rule
+            .emit_lanes(volume, &coefficients, Q::COMPONENTS, &mut sink);
+        let mut four = Four::default();
+        for (hard, cell) in four.hard.iter_mut().zip(&self.cells[cells]) {
+            *hard = cell.kind != Kind::Four;
         }
+        four
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn integrate_hard<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cell: usize,
+        _conserve: bool,
+        value: &impl Fn(usize) -> Q,
+        mut sink: impl FnMut(&Point<T, D>, Q),
+    ) -> bool {
+        if let Some(place) = cloud.bins.place_of(cell, 0) {
+            self.integrate_apart(cloud, place, value, &mut sink);
+        }
+        true
     }
 
     fn relax<Q: Field<T>>(
@@ -373,7 +260,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     }
 
     fn filling(&self, place: usize) -> Filling {
-        self.cells.get(place).map_or(Filling::Full, |fits| fits.filling)
+        self.cells.get(place).map_or(Filling::Full, |cell| cell.filling)
     }
 
     fn reduced_cells(&self) -> usize {
@@ -381,7 +268,11 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     }
 
     fn bytes(&self) -> usize {
-        self.cells.capacity() * size_of::<RelaxedCell<T, D, NB>>() + self.sums.capacity() * size_of::<T>()
+        self.cells.capacity() * size_of::<RelaxedCell>()
+            + self.grams.capacity() * size_of::<KeptProducts<T, NB>>()
+            + self.fits.capacity() * size_of::<FourFits<T, D, NB>>()
+            + self.sums.capacity() * size_of::<[T; LANES]>()
+            + self.pulls.bytes()
     }
 }
 

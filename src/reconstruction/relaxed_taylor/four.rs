@@ -1,0 +1,372 @@
+//! The fits of four cells that follow each other in the list of occupied ones, a cell in each lane.
+
+use std::ops::Range;
+
+use super::filling::OpenSides;
+use crate::lanes::{LANES, Lanes};
+use crate::reconstruction::Cloud;
+use crate::reconstruction::taylor::{CellGroup, lanes_of};
+use crate::scalar::Scalar;
+use crate::taylor::{
+    Factor, FourSums, MOST_COMPONENTS, Products, Rights, factorise, shift_lanes, taylor_lanes,
+};
+
+/// In place of a neighbour that there is not.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Products of four cells, kept.
+pub(super) type KeptProducts<T, const NB: usize> = Products<[T; LANES], NB>;
+
+/// Places of the occupied cells that share a face with four cells: along each axis below and above.
+pub(super) type Neighbours<const D: usize> = [[[u32; LANES]; 2]; D];
+
+/// The factors of the fits of four cells, and what became of them.
+#[derive(Clone, Debug)]
+pub(super) struct FourFits<T, const D: usize, const NB: usize> {
+    pub(super) neighbours: Neighbours<D>,
+    /// Of their own particles.
+    own: KeptProducts<T, NB>,
+    /// With the particles of the neighbours.
+    wide: KeptProducts<T, NB>,
+    /// Whether the own fits have all functions.
+    pub(super) own_is_full: [bool; LANES],
+    /// Whether the own fits are in doubt, and the wide ones not full.
+    pub(super) own_is_hard: [bool; LANES],
+    wide_is_full: [bool; LANES],
+}
+
+#[inline(always)]
+fn keep<T: Scalar, V: Lanes<T>, const NB: usize>(products: &Products<V, NB>) -> KeptProducts<T, NB> {
+    std::array::from_fn(|i| std::array::from_fn(|j| products[i][j].array()))
+}
+
+#[inline(always)]
+fn load<T: Scalar, V: Lanes<T>, const NB: usize>(kept: &KeptProducts<T, NB>) -> Products<V, NB> {
+    std::array::from_fn(|i| std::array::from_fn(|j| V::new(kept[i][j])))
+}
+
+/// Numbers of points, given as sums of ones.
+#[inline(always)]
+fn counts<T: Scalar, V: Lanes<T>>(sums: V) -> [usize; LANES] {
+    let sums = sums.array();
+    std::array::from_fn(|l| sums[l].primal() as usize)
+}
+
+/// One or zero.
+#[inline(always)]
+fn mask<T: Scalar, V: Lanes<T>>(lanes: [bool; LANES]) -> V {
+    V::new(std::array::from_fn(
+        |l| if lanes[l] { T::one() } else { T::zero() },
+    ))
+}
+
+/// Sums of products over the own particles of each of the cells at `places`.
+#[inline(always)]
+pub(super) fn gram<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
+    cloud: &Cloud<'_, T, D>,
+    places: Range<usize>,
+) -> KeptProducts<T, NB> {
+    let group = CellGroup::new(cloud, places);
+    let mut sums = FourSums::<V, NB>::new();
+    let nothing = [V::splat(T::zero()); MOST_COMPONENTS];
+    for k in 0..group.longest() {
+        let (numbers, weight) = group.points::<T, V>(k);
+        let s = group.local::<T, V>(cloud, &numbers);
+        sums.add(&taylor_lanes::<T, V, D, NB>(&s), weight, &nothing, 0);
+    }
+    keep::<T, V, NB>(sums.gram())
+}
+
+/// Sums over the own particles of each of the cells of functions times the components of `value`, and, if there are `weights`,
+/// of products too, so weighted.
+#[inline(always)]
+pub(super) fn sums<T, V, Q, const D: usize, const NB: usize>(
+    cloud: &Cloud<'_, T, D>,
+    places: Range<usize>,
+    weights: Option<&[T]>,
+    value: &impl Fn(usize) -> Q,
+) -> (FourSums<V, NB>, [usize; LANES])
+where
+    T: Scalar,
+    V: Lanes<T>,
+    Q: crate::field::Field<T>,
+{
+    let group = CellGroup::new(cloud, places);
+    let mut sums = FourSums::<V, NB>::new();
+    for k in 0..group.longest() {
+        let (numbers, mut weight) = group.points::<T, V>(k);
+        let s = group.local::<T, V>(cloud, &numbers);
+        let values = lanes_of::<T, V, Q>(|l| value(numbers[l]));
+        let psi = taylor_lanes::<T, V, D, NB>(&s);
+        if let Some(weights) = weights {
+            weight = weight * V::new(std::array::from_fn(|l| weights[numbers[l]]));
+            sums.add(&psi, weight, &values, Q::COMPONENTS);
+        } else {
+            sums.add_values(&psi, weight, &values, Q::COMPONENTS);
+        }
+    }
+    (sums, group.counts)
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
+    /// Of no particles.
+    pub(super) fn empty() -> Self {
+        let nothing = [[[T::zero(); LANES]; NB]; NB];
+        Self {
+            neighbours: [[[NONE; LANES]; 2]; D],
+            own: nothing,
+            wide: nothing,
+            own_is_full: [false; LANES],
+            own_is_hard: [true; LANES],
+            wide_is_full: [false; LANES],
+        }
+    }
+
+    /// On which sides the cell in a lane has no neighbour.
+    pub(super) fn open_sides(&self, lane: usize) -> OpenSides<D> {
+        self.neighbours
+            .map(|sides| sides.map(|places| places[lane] == NONE))
+    }
+
+    /// Of the cells at `places`, given the sums of products of all.
+    #[inline(always)]
+    pub(super) fn new<V: Lanes<T>>(
+        cloud: &Cloud<'_, T, D>,
+        places: Range<usize>,
+        grams: &[KeptProducts<T, NB>],
+        tolerance: T,
+    ) -> Self {
+        let mut neighbours = [[[NONE; LANES]; 2]; D];
+        for (l, place) in places.clone().enumerate() {
+            cloud
+                .bins
+                .for_each_neighbour(cloud.grid, place, |axis, above, other| {
+                    neighbours[axis][usize::from(above)][l] = other as u32;
+                });
+        }
+        let gram = load::<T, V, NB>(&grams[places.start / LANES]);
+        let own_counts = counts::<T, V>(gram[0][0]);
+        let own = factorise::<T, V, D, NB>(&gram, 0, own_counts, tolerance);
+        let all = with_neighbours::<T, V, D, NB>(gram, &neighbours, grams);
+        let all_counts = counts::<T, V>(all[0][0]);
+        let wide = factorise::<T, V, D, NB>(&all, 0, all_counts, tolerance);
+        Self {
+            neighbours,
+            own: keep::<T, V, NB>(&own.factor.0),
+            wide: keep::<T, V, NB>(&wide.factor.0),
+            own_is_full: std::array::from_fn(|l| own.functions[l] == NB),
+            own_is_hard: own.hard,
+            wide_is_full: std::array::from_fn(|l| !wide.hard[l] && wide.functions[l] == NB),
+        }
+    }
+
+    /// Coefficients of what is integrated, from the own sums: the own fit, and where that has not all functions the wide one with,
+    /// on top of it, what the own particles see beside that.
+    #[inline(always)]
+    pub(super) fn integrated<V: Lanes<T>>(
+        &self,
+        group: usize,
+        gram: &KeptProducts<T, NB>,
+        sums: &KeptSums<'_, T>,
+    ) -> Rights<V, NB> {
+        let mut right = sums.load::<V, NB>(group);
+        let wants_wide: [bool; LANES] = std::array::from_fn(|l| !self.own_is_full[l] && self.wide_is_full[l]);
+        let mut seen = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+        if wants_wide.contains(&true) {
+            seen = self.wide_coefficients(group, sums);
+            let mask = mask::<T, V>(wants_wide);
+            for k in 0..NB {
+                for q in 0..sums.components {
+                    seen[k][q] = seen[k][q] * mask;
+                }
+            }
+            let gram = load::<T, V, NB>(gram);
+            for i in 0..NB {
+                for j in 0..NB {
+                    let product = gram[i.max(j)][i.min(j)];
+                    for q in 0..sums.components {
+                        right[i][q] = right[i][q] - product * seen[j][q];
+                    }
+                }
+            }
+        }
+        let own = self.own_coefficients(&right, sums.components);
+        for k in 0..NB {
+            for q in 0..sums.components {
+                seen[k][q] = seen[k][q] + own[k][q];
+            }
+        }
+        seen
+    }
+
+    /// Coefficients of the own fits from their sums.
+    #[inline(always)]
+    pub(super) fn own_coefficients<V: Lanes<T>>(
+        &self,
+        right: &Rights<V, NB>,
+        components: usize,
+    ) -> Rights<V, NB> {
+        solve(&self.own, right, components)
+    }
+
+    /// Coefficients of the wide fits; zero where they have not all functions.
+    #[inline(always)]
+    pub(super) fn wide_coefficients<V: Lanes<T>>(
+        &self,
+        group: usize,
+        sums: &KeptSums<'_, T>,
+    ) -> Rights<V, NB> {
+        let mut right = sums.load::<V, NB>(group);
+        for axis in 0..D {
+            for (side, places) in self.neighbours[axis].iter().enumerate() {
+                let there: [bool; LANES] = std::array::from_fn(|l| places[l] != NONE);
+                if !there.contains(&true) {
+                    continue;
+                }
+                let mut theirs = sums.load_at::<V, NB>(places);
+                shift_lanes::<T, V, D, NB, MOST_COMPONENTS>(&mut theirs, sums.components, axis, side > 0);
+                let mask = mask::<T, V>(there);
+                for k in 0..NB {
+                    for q in 0..sums.components {
+                        right[k][q] = theirs[k][q].mul_add(mask, right[k][q]);
+                    }
+                }
+            }
+        }
+        let mask = mask::<T, V>(self.wide_is_full);
+        let mut coefficients = solve(&self.wide, &right, sums.components);
+        for k in 0..NB {
+            for q in 0..sums.components {
+                coefficients[k][q] = coefficients[k][q] * mask;
+            }
+        }
+        coefficients
+    }
+
+    /// In which lanes the wide fits have all functions.
+    pub(super) fn wide_is_full(&self) -> [bool; LANES] {
+        self.wide_is_full
+    }
+}
+
+#[inline(always)]
+fn solve<T: Scalar, V: Lanes<T>, const NB: usize>(
+    factor: &KeptProducts<T, NB>,
+    right: &Rights<V, NB>,
+    components: usize,
+) -> Rights<V, NB> {
+    let factor = Factor(load::<T, V, NB>(factor));
+    let mut coefficients = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+    for q in 0..components {
+        factor.solve(0, q, right, &mut coefficients);
+    }
+    coefficients
+}
+
+/// Adds the sums of products of the neighbours, in the frames of the cells themselves.
+#[inline(always)]
+fn with_neighbours<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
+    mut gram: Products<V, NB>,
+    neighbours: &Neighbours<D>,
+    grams: &[KeptProducts<T, NB>],
+) -> Products<V, NB> {
+    for axis in 0..D {
+        for (side, places) in neighbours[axis].iter().enumerate() {
+            let there: [bool; LANES] = std::array::from_fn(|l| places[l] != NONE);
+            if !there.contains(&true) {
+                continue;
+            }
+            let at: [usize; LANES] =
+                std::array::from_fn(|l| if places[l] == NONE { 0 } else { places[l] as usize });
+            let mut rows: Products<V, NB> = std::array::from_fn(|i| {
+                std::array::from_fn(|j| {
+                    let (high, low) = (i.max(j), i.min(j));
+                    V::new(std::array::from_fn(|l| {
+                        grams[at[l] / LANES][high][low][at[l] % LANES]
+                    }))
+                })
+            });
+            shift_lanes::<T, V, D, NB, NB>(&mut rows, NB, axis, side > 0);
+            let mut columns: Products<V, NB> = std::array::from_fn(|j| std::array::from_fn(|i| rows[i][j]));
+            shift_lanes::<T, V, D, NB, NB>(&mut columns, NB, axis, side > 0);
+            let mask = mask::<T, V>(there);
+            for i in 0..NB {
+                for j in 0..=i {
+                    gram[i][j] = columns[j][i].mul_add(mask, gram[i][j]);
+                }
+            }
+        }
+    }
+    gram
+}
+
+/// Sums of functions times components over the particles of all occupied cells, four cells after four: of each function each
+/// component in four lanes.
+#[derive(Clone, Copy)]
+pub(super) struct KeptSums<'a, T> {
+    pub(super) values: &'a [[T; LANES]],
+    pub(super) components: usize,
+}
+
+impl<T: Scalar> KeptSums<'_, T> {
+    /// Of four cells.
+    #[inline(always)]
+    pub(super) fn load<V: Lanes<T>, const NB: usize>(&self, group: usize) -> Rights<V, NB> {
+        let mut rights = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+        let first = group * NB * self.components;
+        let values = &self.values[first..first + NB * self.components];
+        for k in 0..NB {
+            for q in 0..self.components {
+                rights[k][q] = V::new(values[k * self.components + q]);
+            }
+        }
+        rights
+    }
+
+    /// Of the cells at four places, any where there is none.
+    #[inline(always)]
+    fn load_at<V: Lanes<T>, const NB: usize>(&self, places: &[u32; LANES]) -> Rights<V, NB> {
+        let mut rights = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+        let each = NB * self.components;
+        let at: [usize; LANES] =
+            std::array::from_fn(|l| if places[l] == NONE { 0 } else { places[l] as usize });
+        let of: [&[[T; LANES]]; LANES] = std::array::from_fn(|l| {
+            let first = at[l] / LANES * each;
+            &self.values[first..first + each]
+        });
+        for k in 0..NB {
+            for q in 0..self.components {
+                rights[k][q] = V::new(std::array::from_fn(|l| {
+                    of[l][k * self.components + q][at[l] % LANES]
+                }));
+            }
+        }
+        rights
+    }
+
+    /// Of one cell, as a field.
+    pub(super) fn of_cell<Q: crate::field::Field<T>, const NB: usize>(&self, place: usize) -> [Q; NB] {
+        let first = place / LANES * NB * self.components;
+        std::array::from_fn(|k| {
+            let mut sum = Q::zero();
+            for q in 0..self.components {
+                sum.set_component(q, self.values[first + k * self.components + q][place % LANES]);
+            }
+            sum
+        })
+    }
+}
+
+/// Puts the sums of four cells where they are kept.
+#[inline(always)]
+pub(super) fn keep_sums<T: Scalar, V: Lanes<T>, const NB: usize>(
+    rights: &Rights<V, NB>,
+    components: usize,
+    kept: &mut [[T; LANES]],
+) {
+    for k in 0..NB {
+        for q in 0..components {
+            kept[k * components + q] = rights[k][q].array();
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Taking in where the particles are.
+
+use std::ops::Range;
+
+use super::cells::RelaxedCell;
+use super::four::{FourFits, KeptProducts, gram};
+use super::{GROUPS, RelaxedTaylor};
+use crate::lanes::{LANES, Lanes, with_lanes_of};
+use crate::parallel::{Rows, each_span, many_threads};
+use crate::reconstruction::Cloud;
+use crate::scalar::Scalar;
+
+impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
+    /// Whether threads should share the groups of four cells.
+    pub(super) fn share_groups(&self) -> bool {
+        self.cells.len() > GROUPS * LANES && many_threads()
+    }
+
+    /// Places of the cells of a group.
+    pub(super) fn places(&self, group: usize) -> Range<usize> {
+        group * LANES..self.cells.len().min((group + 1) * LANES)
+    }
+
+    /// Makes the fits of all occupied cells, for which there must be room.
+    pub(super) fn take_in_geometry(&mut self, cloud: &Cloud<'_, T, D>) {
+        let occupied = cloud.bins.occupied().len();
+        self.cells.resize(occupied, RelaxedCell::none());
+        let groups = occupied.div_ceil(LANES);
+        let parallel = self.share_groups();
+        let mut grams = std::mem::take(&mut self.grams);
+        grams.resize(groups, [[[T::zero(); LANES]; NB]; NB]);
+        each_span(parallel, GROUPS, &mut grams[..], &|first, grams| {
+            with_lanes_of!(T, self.grams_in(cloud, first, grams));
+        });
+        let (mut fits, mut cells) = (std::mem::take(&mut self.fits), std::mem::take(&mut self.cells));
+        let count = cells.len();
+        fits.resize(groups, FourFits::empty());
+        let work = (
+            &mut fits[..],
+            Rows {
+                values: &mut cells[..],
+                width: LANES,
+            },
+        );
+        let tolerance = self.tolerance;
+        each_span(parallel, GROUPS, work, &|first, (fits, cells)| {
+            let fitting = Fitting {
+                cloud,
+                grams: &grams,
+                count,
+                tolerance,
+            };
+            with_lanes_of!(T, fitting.fits_in(first, fits, cells.values));
+        });
+        (self.grams, self.fits, self.cells) = (grams, fits, cells);
+    }
+
+    #[inline(never)]
+    fn grams_in<V: Lanes<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        first: usize,
+        grams: &mut [KeptProducts<T, NB>],
+    ) {
+        for (k, kept) in grams.iter_mut().enumerate() {
+            *kept = gram::<T, V, D, NB>(cloud, self.places(first + k));
+        }
+    }
+}
+
+/// What fits are made of.
+struct Fitting<'a, 'c, T, const D: usize, const NB: usize> {
+    cloud: &'a Cloud<'c, T, D>,
+    grams: &'a [KeptProducts<T, NB>],
+    /// Number of occupied cells.
+    count: usize,
+    tolerance: T,
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> Fitting<'_, '_, T, D, NB> {
+    #[inline(never)]
+    fn fits_in<V: Lanes<T>>(&self, first: usize, fits: &mut [FourFits<T, D, NB>], cells: &mut [RelaxedCell]) {
+        let occupied = self.cloud.bins.occupied();
+        for (k, (fits, cells)) in fits.iter_mut().zip(cells.chunks_mut(LANES)).enumerate() {
+            let start = (first + k) * LANES;
+            let places = start..self.count.min(start + LANES);
+            *fits = FourFits::new::<V>(self.cloud, places, self.grams, self.tolerance);
+            for (l, cell) in cells.iter_mut().enumerate() {
+                let number = occupied[start + l] as usize;
+                let own = [fits.own_is_full[l], fits.own_is_hard[l]];
+                *cell = RelaxedCell::new::<T, D, NB>(
+                    self.cloud,
+                    number,
+                    &fits.open_sides(l),
+                    own,
+                    self.tolerance,
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Moving values towards the fits.
+
+use super::cells::{Kind, own_fit, wide_coefficients};
+use super::four::{NONE, sums};
+use super::pull::{PullRows, Pulls, keep_pulls};
+use super::stream::difference;
+use super::{ALIKE, GROUPS, RelaxedTaylor};
+use crate::field::Field;
+use crate::lanes::{LANES, Lanes, with_lanes_of};
+use crate::parallel::each_span;
+use crate::reconstruction::taylor::local;
+use crate::reconstruction::{Cloud, Patch, Reconstruction};
+use crate::scalar::Scalar;
+use crate::taylor::{CellFit, MOST_COMPONENTS, Rights, factorise};
+
+impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
+    /// Moves the values towards the fits of their own cell and through its neighbours.
+    pub(super) fn relax_towards_both<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        crossed: &[T],
+        values: &mut [Q],
+    ) {
+        let taken: &[Q] = values;
+        self.take_in_field(cloud, &|p| taken[p]);
+        let mut pulls = std::mem::replace(&mut self.pulls, Pulls::none());
+        let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
+        each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
+            with_lanes_of!(T, self.pull_to_both_in[Q](crossed, first, rows));
+        });
+        pulls.apply::<Q, D, NB>(cloud, values);
+        for place in 0..self.cells.len() {
+            if self.cells[place].kind == Kind::Alone {
+                self.relax_alone(cloud, place, crossed, values);
+            }
+        }
+        self.pulls = pulls;
+    }
+
+    #[inline(never)]
+    fn pull_to_both_in<V: Lanes<T>, Q: Field<T>>(&self, crossed: &[T], first: usize, rows: PullRows<'_, T>) {
+        let sums = self.kept_sums::<Q>();
+        let zero = V::splat(T::zero());
+        for (k, row) in rows.groups().enumerate() {
+            let group = first + k;
+            let fits = &self.fits[group];
+            let (mut own, mut neighbours) = ([T::zero(); LANES], [T::zero(); LANES]);
+            for (l, place) in self.places(group).enumerate() {
+                if self.cells[place].kind == Kind::Four {
+                    [own[l], neighbours[l]] = self.relaxation.shares(crossed[place]);
+                    if !fits.wide_is_full()[l] || !self.are_alike(crossed, place) {
+                        neighbours[l] = T::zero();
+                    }
+                }
+            }
+            let seen = fits.own_coefficients(&sums.load::<V, NB>(group), Q::COMPONENTS);
+            let wide = fits.wide_coefficients::<V>(group, &sums);
+            let mut pull: Rights<V, NB> = [[zero; MOST_COMPONENTS]; NB];
+            let shares = [V::new(own), V::new(neighbours)];
+            for k in 0..NB {
+                for q in 0..Q::COMPONENTS {
+                    pull[k][q] = wide[k][q].mul_add(shares[1], seen[k][q] * shares[0]);
+                }
+            }
+            let shares = (shares[0] + shares[1]).array();
+            keep_pulls::<T, V, NB>(&pull, Q::COMPONENTS, shares, row);
+        }
+    }
+
+    /// Whether waves are about as fast in the neighbours of a cell as in itself: stress may jump where the material changes.
+    fn are_alike(&self, crossed: &[T], place: usize) -> bool {
+        let [mut slowest, mut fastest] = [crossed[place]; 2];
+        for other in self.fits[place / LANES].neighbours.iter().flatten() {
+            let other = other[place % LANES];
+            if other != NONE {
+                slowest = slowest.min(crossed[other as usize]);
+                fastest = fastest.max(crossed[other as usize]);
+            }
+        }
+        fastest <= slowest * T::lit(ALIKE)
+    }
+
+    /// The same in one cell that is fitted alone. The kept sums are those of before.
+    #[cold]
+    #[inline(never)]
+    fn relax_alone<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        place: usize,
+        crossed: &[T],
+        values: &mut [Q],
+    ) {
+        let cell = cloud.bins.occupied()[place] as usize;
+        let (whole, patch) = (Patch::whole(cloud.grid, cell), self.patch(cloud, place));
+        let samples = local(cloud, cell, &patch).map(|(p, s)| (s, T::one(), values[p]));
+        let seen = own_fit::<T, D, NB>(cloud, cell, &patch, self.tolerance).coefficients(samples, Q::zero());
+        let wide = if self.are_alike(crossed, place) {
+            wide_coefficients::<T, D, NB, Q>(cloud, place, &self.kept_sums::<Q>(), self.tolerance)
+        } else {
+            None
+        };
+        let [own, neighbours] = self.relaxation.shares(crossed[place]);
+        for (p, s) in local(cloud, cell, &patch) {
+            let old = values[p];
+            values[p].add_scaled(own, difference(&s, &seen, old));
+            if let Some(wide) = &wide {
+                let s = whole.local(&cloud.positions[p]);
+                values[p].add_scaled(neighbours, difference(&s, wide, old));
+            }
+        }
+    }
+
+    /// Moves the values towards the weighted fit of their own cell.
+    pub(super) fn relax_towards_own<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        weights: &[T],
+        crossed: &[T],
+        values: &mut [Q],
+    ) {
+        let taken: &[Q] = values;
+        let mut pulls = std::mem::replace(&mut self.pulls, Pulls::none());
+        let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
+        each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
+            with_lanes_of!(
+                T,
+                self.pull_to_own_in[Q](cloud, weights, crossed, first, rows, taken)
+            );
+        });
+        pulls.apply::<Q, D, NB>(cloud, values);
+        for (place, cell) in self.cells.iter().enumerate() {
+            if cell.kind == Kind::Alone || pulls.is_left(place) {
+                self.relax_alone_towards_own(cloud, place, weights, crossed, values);
+            }
+        }
+        self.pulls = pulls;
+    }
+
+    #[inline(never)]
+    fn pull_to_own_in<V: Lanes<T>, Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        weights: &[T],
+        crossed: &[T],
+        first: usize,
+        rows: PullRows<'_, T>,
+        values: &[Q],
+    ) {
+        for (k, row) in rows.groups().enumerate() {
+            let places = self.places(first + k);
+            let (sums, counts) = sums::<T, V, Q, D, NB>(cloud, places.clone(), Some(weights), &|p| values[p]);
+            let fits = factorise::<T, V, D, NB>(sums.gram(), 0, counts, self.tolerance);
+            let mut shares = [T::zero(); LANES];
+            for (l, place) in places.enumerate() {
+                if self.cells[place].kind == Kind::Four {
+                    [shares[l], _] = self.relaxation.shares(crossed[place]);
+                }
+            }
+            let mut pull: Rights<V, NB> = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+            let share = V::new(shares);
+            for q in 0..Q::COMPONENTS {
+                fits.factor.solve(0, q, sums.right(), &mut pull);
+                for function in &mut pull {
+                    function[q] = function[q] * share;
+                }
+            }
+            for l in 0..LANES {
+                if fits.hard[l] && shares[l] > T::zero() {
+                    shares[l] = Pulls::left();
+                }
+            }
+            keep_pulls::<T, V, NB>(&pull, Q::COMPONENTS, shares, row);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn relax_alone_towards_own<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        place: usize,
+        weights: &[T],
+        crossed: &[T],
+        values: &mut [Q],
+    ) {
+        let cell = cloud.bins.occupied()[place] as usize;
+        let patch = if self.cells[place].kind == Kind::Alone {
+            self.patch(cloud, place)
+        } else {
+            Patch::whole(cloud.grid, cell)
+        };
+        let [share, _] = self.relaxation.shares(crossed[place]);
+        let points = local(cloud, cell, &patch).map(|(p, s)| (s, weights[p]));
+        let samples = local(cloud, cell, &patch).map(|(p, s)| (s, weights[p], values[p]));
+        let fit = CellFit::<T, NB>::weighted(points, 0, self.tolerance);
+        let seen = fit.coefficients(samples, Q::zero());
+        for (p, s) in local(cloud, cell, &patch) {
+            let unseen = difference(&s, &seen, values[p]);
+            values[p].add_scaled(share, unseen);
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Streaming the fits.
+
+use std::ops::Range;
+
+use super::RelaxedTaylor;
+use super::cells::{Kind, ended_patch, own_fit, wide_coefficients};
+use super::four::{KeptSums, keep_sums, sums};
+use crate::field::Field;
+use crate::lanes::{LANES, Lanes, with_lanes_of};
+use crate::parallel::{Rows, each_span};
+use crate::reconstruction::gauss::polynomial;
+use crate::reconstruction::taylor::local;
+use crate::reconstruction::{Cloud, Patch, Point};
+use crate::scalar::Scalar;
+use crate::taylor::{MOST_COMPONENTS, Rights, taylor_functions};
+
+impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
+    /// Sums the functions times a field over the particles of each cell, on several threads if `parallel`.
+    pub(super) fn sum_field<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        value: &(impl Fn(usize) -> Q + Sync),
+    ) {
+        let mut kept = std::mem::take(&mut self.sums);
+        kept.clear();
+        kept.resize(self.fits.len() * NB * Q::COMPONENTS, [T::zero(); LANES]);
+        let work = Rows {
+            values: &mut kept[..],
+            width: NB * Q::COMPONENTS,
+        };
+        each_span(self.share_groups(), super::GROUPS, work, &|first, kept| {
+            with_lanes_of!(T, self.sums_in[Q, _](cloud, first, value, kept.values));
+        });
+        self.sums = kept;
+    }
+
+    #[inline(never)]
+    fn sums_in<V: Lanes<T>, Q: Field<T>, F: Fn(usize) -> Q>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        first: usize,
+        value: &F,
+        kept: &mut [[T; LANES]],
+    ) {
+        for (k, kept) in kept.chunks_exact_mut(NB * Q::COMPONENTS).enumerate() {
+            let places = self.places(first + k);
+            let (sums, _) = sums::<T, V, Q, D, NB>(cloud, places, None, value);
+            keep_sums::<T, V, NB>(sums.right(), Q::COMPONENTS, kept);
+        }
+    }
+
+    /// The sums of the field that was taken in last.
+    pub(super) fn kept_sums<Q: Field<T>>(&self) -> KeptSums<'_, T> {
+        KeptSums {
+            values: &self.sums,
+            components: Q::COMPONENTS,
+        }
+    }
+
+    /// Coefficients of what is integrated in four cells.
+    #[inline(always)]
+    pub(super) fn integrated<V: Lanes<T>, Q: Field<T>>(&self, group: usize) -> Rights<V, NB> {
+        let sums = self.kept_sums::<Q>();
+        self.fits[group].integrated(group, &self.grams[group], &sums)
+    }
+
+    /// Streams the fits of whole cells, four at a time, and the other ones.
+    #[inline(never)]
+    pub(super) fn integrate_in<V: Lanes<T>, Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        value: &impl Fn(usize) -> Q,
+        sink: &mut impl FnMut(&Point<T, D>, Q),
+    ) {
+        let mut coefficients = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+        let mut at_hand = None;
+        for place in cells {
+            if self.cells[place].kind != Kind::Four {
+                self.integrate_apart(cloud, place, value, sink);
+                continue;
+            }
+            if at_hand != Some(place / LANES) {
+                at_hand = Some(place / LANES);
+                coefficients = self.integrated::<V, Q>(place / LANES);
+            }
+            let of_cell = std::array::from_fn(|k| {
+                let mut coefficient = Q::zero();
+                for q in 0..Q::COMPONENTS {
+                    coefficient.set_component(q, coefficients[k][q].array()[place % LANES]);
+                }
+                coefficient
+            });
+            let patch = Patch::whole(cloud.grid, cloud.bins.occupied()[place] as usize);
+            self.rule.emit(&patch, &of_cell, sink);
+        }
+    }
+
+    /// Streams one cell that is not fitted with others.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn integrate_apart<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        place: usize,
+        value: &impl Fn(usize) -> Q,
+        sink: &mut impl FnMut(&Point<T, D>, Q),
+    ) {
+        let cell = cloud.bins.occupied()[place] as usize;
+        if self.cells[place].kind == Kind::Open {
+            return emit_particles(cloud, cell, value, sink);
+        }
+        let (whole, patch) = (Patch::whole(cloud.grid, cell), self.patch(cloud, place));
+        let own = own_fit::<T, D, NB>(cloud, cell, &patch, self.tolerance);
+        let samples = local(cloud, cell, &patch).map(|(p, s)| (s, T::one(), value(p)));
+        let seen = if self.cells[place].is_full {
+            None
+        } else {
+            wide_coefficients::<T, D, NB, Q>(cloud, place, &self.kept_sums::<Q>(), self.tolerance)
+        };
+        let coefficients = match seen {
+            // What the neighbours see, and on top of it what the own particles see beside that.
+            Some(seen) => {
+                self.rule.emit_in_frame(&patch, &whole, &seen, sink);
+                let rest = samples.map(|(s, weight, value)| {
+                    let s_whole = whole.local(&patch.position(&s));
+                    (s, weight, difference(&s_whole, &seen, value).scaled(-T::one()))
+                });
+                own.coefficients(rest, Q::zero())
+            }
+            None => own.coefficients(samples, Q::zero()),
+        };
+        self.rule.emit(&patch, &coefficients, sink);
+    }
+
+    /// What a cell that is fitted alone covers.
+    pub(super) fn patch(&self, cloud: &Cloud<'_, T, D>, place: usize) -> Patch<T, D> {
+        let cell = cloud.bins.occupied()[place] as usize;
+        ended_patch(cloud, cell, &self.fits[place / LANES].open_sides(place % LANES))
+    }
+}
+
+/// What takes the `value` at `s` to the polynomial.
+#[inline(always)]
+pub(super) fn difference<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
+    s: &nalgebra::SVector<T, D>,
+    coefficients: &[Q; NB],
+    value: Q,
+) -> Q {
+    let mut difference = polynomial(&taylor_functions(s), coefficients);
+    difference.add_scaled(-T::one(), value);
+    difference
+}
+
+/// Streams the values at the particles of a cell.
+#[inline(always)]
+fn emit_particles<T: Scalar, const D: usize, Q: Field<T>>(
+    cloud: &Cloud<'_, T, D>,
+    cell: usize,
+    value: &impl Fn(usize) -> Q,
+    sink: &mut impl FnMut(&Point<T, D>, Q),
+) {
+    for &p in cloud.bins.particles_in(cell) {
+        let p = p as usize;
+        let point = Point {
+            cell: *cloud.bins.cell_of(p),
+            position: cloud.positions[p],
+            moves: true,
+        };
+        sink(&point, value(p).scaled(cloud.volumes[p]));
+    }
+}
