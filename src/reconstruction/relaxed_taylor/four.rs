@@ -35,14 +35,26 @@ pub(super) struct FourFits<T, const D: usize, const NB: usize> {
     wide_is_full: [bool; LANES],
 }
 
+/// Keeps the lower half.
 #[inline(always)]
-fn keep<T: Scalar, V: Lanes<T>, const NB: usize>(products: &Products<V, NB>) -> KeptProducts<T, NB> {
-    std::array::from_fn(|i| std::array::from_fn(|j| products[i][j].array()))
+fn keep<T: Scalar, V: Lanes<T>, const NB: usize>(products: &Products<V, NB>, kept: &mut KeptProducts<T, NB>) {
+    for i in 0..NB {
+        for j in 0..=i {
+            kept[i][j] = products[i][j].array();
+        }
+    }
 }
 
+/// The lower half of what was kept.
 #[inline(always)]
 fn load<T: Scalar, V: Lanes<T>, const NB: usize>(kept: &KeptProducts<T, NB>) -> Products<V, NB> {
-    std::array::from_fn(|i| std::array::from_fn(|j| V::new(kept[i][j])))
+    let mut products = [[V::splat(T::zero()); NB]; NB];
+    for i in 0..NB {
+        for j in 0..=i {
+            products[i][j] = V::new(kept[i][j]);
+        }
+    }
+    products
 }
 
 /// Numbers of points, given as sums of ones.
@@ -60,12 +72,13 @@ fn mask<T: Scalar, V: Lanes<T>>(lanes: [bool; LANES]) -> V {
     ))
 }
 
-/// Sums of products over the own particles of each of the cells at `places`.
+/// Sums of products over the own particles of each of the cells at `places`, the lower half.
 #[inline(always)]
-pub(super) fn gram<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
+pub(super) fn keep_gram<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
     cloud: &Cloud<'_, T, D>,
     places: Range<usize>,
-) -> KeptProducts<T, NB> {
+    kept: &mut KeptProducts<T, NB>,
+) {
     let group = CellGroup::new(cloud, places);
     let mut sums = FourSums::<V, NB>::new();
     let nothing = [V::splat(T::zero()); MOST_COMPONENTS];
@@ -74,7 +87,7 @@ pub(super) fn gram<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
         let s = group.local::<T, V>(cloud, &numbers);
         sums.add(&taylor_lanes::<T, V, D, NB>(&s), weight, &nothing, 0);
     }
-    keep::<T, V, NB>(sums.gram())
+    keep::<T, V, NB>(sums.gram(), kept);
 }
 
 /// Sums over the own particles of each of the cells of functions times the components of `value`, and, if there are `weights`,
@@ -128,15 +141,17 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
             .map(|sides| sides.map(|places| places[lane] == NONE))
     }
 
-    /// Of the cells at `places`, given the sums of products of all.
+    /// Takes in the cells at `places`, given the sums of products of all.
     #[inline(always)]
-    pub(super) fn new<V: Lanes<T>>(
+    pub(super) fn take_in<V: Lanes<T>>(
+        &mut self,
         cloud: &Cloud<'_, T, D>,
         places: Range<usize>,
         grams: &[KeptProducts<T, NB>],
         tolerance: T,
-    ) -> Self {
-        let mut neighbours = [[[NONE; LANES]; 2]; D];
+    ) {
+        self.neighbours = [[[NONE; LANES]; 2]; D];
+        let neighbours = &mut self.neighbours;
         for (l, place) in places.clone().enumerate() {
             cloud
                 .bins
@@ -147,17 +162,16 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
         let gram = load::<T, V, NB>(&grams[places.start / LANES]);
         let own_counts = counts::<T, V>(gram[0][0]);
         let own = factorise::<T, V, D, NB>(&gram, 0, own_counts, tolerance);
-        let all = with_neighbours::<T, V, D, NB>(gram, &neighbours, grams);
+        let all = with_neighbours::<T, V, D, NB>(gram, neighbours, grams);
         let all_counts = counts::<T, V>(all[0][0]);
         let wide = factorise::<T, V, D, NB>(&all, 0, all_counts, tolerance);
-        Self {
-            neighbours,
-            own: keep::<T, V, NB>(&own.factor.0),
-            wide: keep::<T, V, NB>(&wide.factor.0),
-            own_is_full: std::array::from_fn(|l| own.functions[l] == NB),
-            own_is_hard: own.hard,
-            wide_is_full: std::array::from_fn(|l| !wide.hard[l] && wide.functions[l] == NB),
+        keep::<T, V, NB>(&own.factor.0, &mut self.own);
+        keep::<T, V, NB>(&wide.factor.0, &mut self.wide);
+        for l in 0..LANES {
+            self.own_is_full[l] = own.functions[l] == NB;
+            self.wide_is_full[l] = !wide.hard[l] && wide.functions[l] == NB;
         }
+        self.own_is_hard = own.hard;
     }
 
     /// Coefficients of what is integrated, from the own sums: the own fit, and where that has not all functions the wide one with,

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::cells::RelaxedCell;
-use super::four::{FourFits, KeptProducts, gram};
+use super::four::{FourFits, KeptProducts, keep_gram};
 use super::{GROUPS, RelaxedTaylor};
 use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::{Rows, each_span, many_threads};
@@ -63,7 +63,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         grams: &mut [KeptProducts<T, NB>],
     ) {
         for (k, kept) in grams.iter_mut().enumerate() {
-            *kept = gram::<T, V, D, NB>(cloud, self.places(first + k));
+            keep_gram::<T, V, D, NB>(cloud, self.places(first + k), kept);
         }
     }
 }
@@ -84,7 +84,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Fitting<'_, '_, T, D, NB> {
         for (k, (fits, cells)) in fits.iter_mut().zip(cells.chunks_mut(LANES)).enumerate() {
             let start = (first + k) * LANES;
             let places = start..self.count.min(start + LANES);
-            *fits = FourFits::new::<V>(self.cloud, places, self.grams, self.tolerance);
+            fits.take_in::<V>(self.cloud, places, self.grams, self.tolerance);
             for (l, cell) in cells.iter_mut().enumerate() {
                 let number = occupied[start + l] as usize;
                 let own = [fits.own_is_full[l], fits.own_is_hard[l]];
