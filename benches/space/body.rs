@@ -28,19 +28,34 @@ pub enum Order {
     Shuffled,
 }
 
-/// `cells` along each axis of the unit box, two particles a cell and axis.
+/// `cells` along each axis of the unit box, `per_cell` particles a cell and axis.
 #[derive(Clone, Copy)]
 pub struct Body {
     pub cells: usize,
+    pub per_cell: usize,
     pub order: Order,
 }
 
 impl Body {
-    /// The box that comes nearest to so many particles.
+    /// The box that comes nearest to so many particles, two of them a cell and axis.
     pub fn of<const D: usize>(particles: usize, order: Order) -> Self {
-        let cells = (particles as f64).powf(1.0 / D as f64) / 2.0;
+        Self::with::<D>(particles, 2, order)
+    }
+
+    /// The same with so many particles a cell and axis.
+    pub fn with<const D: usize>(particles: usize, per_cell: usize, order: Order) -> Self {
+        let cells = (particles as f64).powf(1.0 / D as f64) / per_cell as f64;
         let cells = cells.round() as usize;
-        Self { cells, order }
+        Self {
+            cells,
+            per_cell,
+            order,
+        }
+    }
+
+    /// Number of particles.
+    pub fn particles<const D: usize>(self) -> usize {
+        (self.per_cell * self.cells).pow(D as u32)
     }
 
     pub fn step(self) -> f64 {
@@ -54,7 +69,7 @@ impl Body {
     /// Positions and volumes.
     pub fn points<const D: usize>(self) -> Vec<(SVector<f64, D>, f64)> {
         let grid = self.grid::<D>();
-        let mut points = lattice(&grid, grid.min(), grid.max(), [2; D]);
+        let mut points = lattice(&grid, grid.min(), grid.max(), [self.per_cell; D]);
         match self.order {
             Order::Cells => {
                 points.sort_by_cached_key(|(x, _)| grid.linear(&grid.locate(x).expect("inside")));
