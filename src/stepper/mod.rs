@@ -6,7 +6,8 @@
 //!
 //! 1. `forces`: $m_i = \sum_p m_p\phi_i(x_p)$ and $f_i = -\int\sigma\nabla\phi_i + \text{traction}$;
 //! 2. `acceleration`: $a_i = f_i/m_i + b$, the prescribed value on constrained DOFs;
-//! 3. `velocity`: $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p) a_i$, then DOF velocities from the updated particles;
+//! 3. `velocity`: $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p) a_i$, then DOF velocities from the updated particles, whose
+//!    momenta `mapping` puts to the DOFs;
 //! 4. `advance`: position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$, stress by the law,
 //!    volume by $\det(1+\Delta\varepsilon)$ at large strain.
 //!
@@ -27,6 +28,7 @@ mod forcing;
 mod ghost;
 mod lanes;
 mod liquid;
+mod mapping;
 mod matrix;
 mod order;
 mod pairs;

@@ -176,6 +176,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         value: impl Fn(usize) -> Q,
         sink: impl FnMut(&Point<T, D>, Q),
     ) {
+        // Not what a step calls: that streams cells, and allocates nothing.
         let values: Vec<Q> = (0..cloud.positions.len()).map(value).collect();
         self.take_in_field(cloud, &|p| values[p]);
         self.integrate_cells(cloud, 0..self.cells.len(), |p| values[p], sink);

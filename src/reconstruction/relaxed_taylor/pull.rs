@@ -8,7 +8,7 @@ use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::{PARTICLES, Sliced, each_span, many_threads};
 use crate::reconstruction::Cloud;
 use crate::scalar::Scalar;
-use crate::taylor::{MOST_COMPONENTS, Rights, taylor_lanes};
+use crate::taylor::{Rights, taylor_lanes};
 
 /// For each occupied cell the polynomial and the share by which its particles are moved: `value += p(x) - share value`.
 #[derive(Clone, Debug)]
@@ -192,7 +192,7 @@ pub(super) fn keep_pulls<T: Scalar, V: Lanes<T>, const NB: usize>(
         *share = shares[l];
         if shares[l] > T::zero() {
             for k in 0..NB {
-                for q in 0..components.min(MOST_COMPONENTS) {
+                for q in 0..components {
                     cell[k * components + q] = rights[k][q].array()[l];
                 }
             }
