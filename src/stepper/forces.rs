@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::by_four;
 use super::cell_sums::CellSums;
 use super::lanes::{self, Bodies, Fits, Pass, at_fixed_points};
 use super::spans::{Spans, share};
@@ -132,7 +133,7 @@ where
             let (phase, data) = (&self.phase, &self.particles.phase);
             assembly.internal_force(|p| phase.total_stress(&effective[p], &data[p]));
         } else {
-            assembly.internal_force(|p| effective[p]);
+            assembly.internal_force(stresses(effective));
         }
         if by_four && !R::KEEPS_FITS {
             let reduced = self.spans.reduced.iter().sum();
@@ -165,15 +166,15 @@ where
         );
         each_span(parallel, span, work, &|_, (positions, cells, masses, mass)| {
             let (first, mass) = mass.one();
-            let mut sink = |i: usize, m| mass[i - first] += m;
             if const { lanes::apply_to_values::<T, D, B>() } {
                 let bodies = Bodies {
                     positions,
                     cells,
                     masses,
                 };
-                return at_fixed_points!(B, basis, grid, sum_masses(bodies, &mut sink));
+                return by_four::add_masses(basis, grid, bodies, first, mass);
             }
+            let mut sink = |i: usize, m| mass[i - first] += m;
             let mut sums = CellSums::new(basis, grid);
             for ((x, cell), &m) in positions.iter().zip(cells).zip(masses) {
                 sums.add(cell, x, |phi, _| m * phi, &mut sink);
@@ -192,8 +193,7 @@ where
             masses: &self.particles.mass,
         };
         if const { lanes::apply_to_values::<T, D, B>() } {
-            let mut sink = |i: usize, j: usize, mass| matrix.add(i, j, mass);
-            at_fixed_points!(B, basis, grid, sum_pairs(bodies, &mut sink));
+            by_four::add_pairs(basis, grid, bodies, matrix);
         } else {
             let pairs = &mut self.pairs;
             let particles = bodies.positions.iter().zip(bodies.masses).zip(bodies.cells);
@@ -227,6 +227,13 @@ where
                 .for_each(&self.grid, cell, &x, |i, phi, _| force[i] += load * phi);
         }
     }
+}
+
+/// Stress of each particle. As a function of its own it is one type for all laws, and what calls it is compiled once.
+fn stresses<T: Scalar, const D: usize>(
+    stress: &[SMatrix<T, D, D>],
+) -> impl Fn(usize) -> SMatrix<T, D, D> + Sync + '_ {
+    |p| stress[p]
 }
 
 /// What the internal force is made of.

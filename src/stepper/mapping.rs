@@ -2,7 +2,8 @@
 
 use nalgebra::SVector;
 
-use super::lanes::{self, Bodies, Fits, at_fixed_points};
+use super::by_four::{self, ByFour};
+use super::lanes::{self, Bodies};
 use super::spans::{Spans, share};
 use super::velocity::sum;
 use super::{Dofs, Stepper, cloud};
@@ -12,7 +13,6 @@ use crate::grid::Grid;
 use crate::law::ConstitutiveLaw;
 use crate::mass::{VelocityMass, banded_row};
 use crate::parallel::{Windows, add_up, each_span};
-use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::{Point, Reconstruction};
 use crate::scalar::Scalar;
@@ -56,8 +56,7 @@ where
                 cells: self.bins.cells(),
                 masses: mass,
             };
-            let mut sink = |i: usize, q| momentum[i] += q;
-            at_fixed_points!(B, basis, grid, sum_momenta(bodies, velocity, &mut sink));
+            by_four::add_momenta(basis, grid, bodies, velocity, momentum);
         } else {
             let cloud = cloud(grid, &self.bins, &self.particles, &self.cuts);
             self.reconstruction.integrate_conserved(
@@ -80,7 +79,7 @@ where
     /// Momentum and row sums of the mass from the reconstructed densities.
     fn map_lumped(&mut self) -> T {
         if const { lanes::fit::<T, D, B, R>() } && self.by_four() {
-            self.map_lumped_by_four();
+            self.by_four_parts().lump();
             return sum(&self.dofs.lumped);
         }
         let add = |(basis, grid): Places<'_, T, D, B>,
@@ -96,51 +95,26 @@ where
         sum(&self.dofs.lumped)
     }
 
-    #[inline(never)]
-    fn map_lumped_by_four(&mut self) {
-        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
-        let density = densities(&self.particles);
-        let (basis, grid, reconstruction) = (&self.basis, &self.grid, &self.reconstruction);
-        let occupied = self.bins.occupied();
-        let (lumped, momentum) = self.dofs.lumped_mut();
-        let Spans {
-            cells: spans,
-            lengths,
-            scalars,
-            vectors,
-            ..
-        } = &mut self.spans;
-        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
-        let work = (
-            occupied,
-            Windows::new(spans, scalars, lumped, 1),
-            Windows::new(spans, vectors, momentum, 1),
-        );
-        each_span(parallel, span, work, &|place, (cells, mass, momentum)| {
-            let ((first, mass), (_, momentum)) = (mass.one(), momentum.one());
-            let momentum = &mut momentum[..mass.len()];
-            let fits = Fits {
-                moving: basis,
-                reconstruction,
-                cloud: &cloud,
-                cells: place..place + cells.len(),
-            };
-            let mut sink = |i: usize, m, q| {
-                mass[i - first] += m;
-                momentum[i - first] += q;
-            };
-            at_fixed_points!(B, basis, grid, integrate_densities(fits, &density, &mut sink));
-        });
-        add_up(spans, scalars, lumped, 1);
-        add_up(spans, vectors, momentum, 1);
+    /// What mapping four cells at a time wants.
+    fn by_four_parts(&mut self) -> ByFour<'_, T, D, B, R> {
+        let particles = &self.particles;
+        ByFour {
+            basis: &self.basis,
+            reconstruction: &self.reconstruction,
+            cloud: cloud(&self.grid, &self.bins, particles, &self.cuts),
+            masses: &particles.mass,
+            velocities: &particles.velocity,
+            spans: &mut self.spans,
+            dofs: &mut self.dofs,
+        }
     }
 
     /// Momentum and mass matrix from the reconstructed densities.
     fn map_consistent(&mut self) -> T {
         match (D > 1, const { lanes::fit::<T, D, B, R>() } && self.by_four()) {
-            (true, true) => self.integrate_lattice_by_four(),
+            (true, true) => self.by_four_parts().fill_lattice(),
             (true, false) => self.integrate_lattice(),
-            (false, true) => self.integrate_band_by_four(),
+            (false, true) => self.by_four_parts().fill_band(),
             (false, false) => self.integrate_band(),
         }
         self.dofs.matrix.complete(None);
@@ -165,73 +139,6 @@ where
                 pairs.add(amount.mass);
             });
         pairs.flush(matrix);
-    }
-
-    #[inline(never)]
-    fn integrate_lattice_by_four(&mut self) {
-        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
-        let density = densities(&self.particles);
-        let Dofs { matrix, velocity, .. } = &mut self.dofs;
-        matrix.clear();
-        velocity.fill(SVector::zeros());
-        let fits = Fits {
-            moving: &self.basis,
-            reconstruction: &self.reconstruction,
-            cloud: &cloud,
-            cells: 0..self.bins.occupied().len(),
-        };
-        let mut sink = |i: usize, q: SVector<T, D>| velocity[i] += q;
-        let mut pairs = |i: usize, j: usize, mass| matrix.add(i, j, mass);
-        at_fixed_points!(
-            B,
-            &self.basis,
-            &self.grid,
-            integrate_pairs(fits, &density, &mut sink, &mut pairs)
-        );
-    }
-
-    #[inline(never)]
-    fn integrate_band_by_four(&mut self) {
-        let half_band = self.dofs.matrix.band_mut().half_band();
-        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
-        let density = densities(&self.particles);
-        let (basis, grid, reconstruction) = (&self.basis, &self.grid, &self.reconstruction);
-        let occupied = self.bins.occupied();
-        let (rows, momentum) = self.dofs.band_mut();
-        let Spans {
-            cells: spans,
-            lengths,
-            matrices,
-            vectors,
-            ..
-        } = &mut self.spans;
-        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
-        let work = (
-            occupied,
-            Windows::new(spans, matrices, rows, half_band + 1),
-            Windows::new(spans, vectors, momentum, 1),
-        );
-        each_span(parallel, span, work, &|place, (cells, rows, momentum)| {
-            let ((first, rows), (_, momentum)) = (rows.one(), momentum.one());
-            let fits = Fits {
-                moving: basis,
-                reconstruction,
-                cloud: &cloud,
-                cells: place..place + cells.len(),
-            };
-            let mut sink = |i: usize, q: SVector<T, D>| momentum[i - first] += q;
-            let mut matrix = |i: usize, j: usize, mass| {
-                banded_row(rows, i - first, half_band)[half_band + j - i] += mass;
-            };
-            at_fixed_points!(
-                B,
-                basis,
-                grid,
-                integrate_pairs(fits, &density, &mut sink, &mut matrix)
-            );
-        });
-        add_up(spans, matrices, rows, half_band + 1);
-        add_up(spans, vectors, momentum, 1);
     }
 
     fn integrate_band(&mut self) {
@@ -333,11 +240,11 @@ struct DofSums<'a, T, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Dofs<T, D> {
-    fn lumped_mut(&mut self) -> (&mut [T], &mut [SVector<T, D>]) {
+    pub(super) fn lumped_mut(&mut self) -> (&mut [T], &mut [SVector<T, D>]) {
         (&mut self.lumped, &mut self.velocity)
     }
 
-    fn band_mut(&mut self) -> (&mut [T], &mut [SVector<T, D>]) {
+    pub(super) fn band_mut(&mut self) -> (&mut [T], &mut [SVector<T, D>]) {
         (self.matrix.band_mut().rows_mut(), &mut self.velocity)
     }
 }
@@ -350,24 +257,5 @@ fn amounts<'a, T: Scalar, const D: usize>(
     move |p| MassMomentum {
         mass: mass[p],
         momentum: velocity[p] * mass[p],
-    }
-}
-
-/// Densities of mass and momentum at each particle.
-fn densities<T: Scalar, const D: usize, S, Q>(
-    particles: &Particles<T, D, S, Q>,
-) -> impl Fn(usize) -> MassMomentum<T, D> + '_ {
-    let Particles {
-        mass,
-        velocity,
-        volume,
-        ..
-    } = particles;
-    move |p| {
-        let density = mass[p] / volume[p];
-        MassMomentum {
-            mass: density,
-            momentum: velocity[p] * density,
-        }
     }
 }
