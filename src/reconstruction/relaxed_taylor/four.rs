@@ -30,7 +30,7 @@ pub(super) struct FourFits<T, const D: usize, const NB: usize> {
     wide: KeptProducts<T, NB>,
     /// Whether the own fits have all functions.
     pub(super) own_is_full: [bool; LANES],
-    /// Whether the own fits are in doubt, and the wide ones not full.
+    /// Whether the own fits are in doubt.
     pub(super) own_is_hard: [bool; LANES],
     wide_is_full: [bool; LANES],
 }

@@ -15,7 +15,7 @@ use crate::scalar::Scalar;
 use crate::taylor::{MOST_COMPONENTS, Rights, taylor_functions};
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
-    /// Sums the functions times a field over the particles of each cell, on several threads if `parallel`.
+    /// Sums the functions times a field over the particles of each cell.
     pub(super) fn sum_field<Q: Field<T>>(
         &mut self,
         cloud: &Cloud<'_, T, D>,
