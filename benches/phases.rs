@@ -128,7 +128,7 @@ fn main() {
     println!(
         "method                 one phase  two/one  implicit/explicit drag   (ns per particle and step; ratios)"
     );
-    for method in Method::NINE {
+    for method in Method::ALL {
         let (mut one, mut two, mut drag) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..REPEATS {
             let variants = [None, Some(Drag::Implicit), Some(Drag::Explicit)];

@@ -50,9 +50,9 @@ pub enum SetupError {
         /// Number of positions.
         expected: usize,
     },
-    /// A reconstruction that knows no liquid.
+    /// A reconstruction that knows no liquid beyond one axis.
     #[error(
-        "relaxed Taylor least squares know one phase only so far; with a liquid that flows use Shepard, Taylor or a cubic spline"
+        "relaxed Taylor least squares know one phase only beyond one axis so far; with a liquid that flows use Shepard or Taylor"
     )]
     OnePhaseOnly,
     /// A particle outside the grid.

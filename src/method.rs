@@ -74,11 +74,11 @@ impl ReconstructionKind {
 }
 
 impl ReconstructionKind {
-    /// Whether it exists for so many axes and phases: the spline along one axis, relaxed Taylor in one phase.
+    /// Whether it exists for so many axes and phases: the spline along one axis, relaxed Taylor in one phase or along one axis.
     pub fn is_known(self, dimension: usize, phases: usize) -> bool {
         match self {
             Self::Shepard | Self::Taylor => true,
-            Self::RelaxedTaylor => phases == 1,
+            Self::RelaxedTaylor => phases == 1 || dimension == 1,
             Self::Spline => dimension == 1,
         }
     }

@@ -261,7 +261,13 @@ impl<T: Scalar> Banded<T> {
     /// Product with `x` of the matrix before it is factorised.
     pub fn multiply<const D: usize>(&self, x: &[SVector<T, D>]) -> Vec<SVector<T, D>> {
         let mut y = vec![SVector::zeros(); self.order];
-        for i in 0..self.order {
+        self.add_product(x, &mut y);
+        y
+    }
+
+    /// Adds to `y` the product with `x` of the matrix before it is factorised.
+    pub fn add_product<const D: usize>(&self, x: &[SVector<T, D>], y: &mut [SVector<T, D>]) {
+        for i in 0..self.order.min(x.len()).min(y.len()) {
             for j in i.saturating_sub(self.half_band)..=i {
                 let entry = self.rows[self.at(i, j)];
                 y[i] += x[j] * entry;
@@ -270,7 +276,6 @@ impl<T: Scalar> Banded<T> {
                 }
             }
         }
-        y
     }
 }
 

@@ -61,6 +61,9 @@ pub trait Phase<T: Scalar, const D: usize>: Sync {
     /// Adds to the velocity (m/s) of a particle's liquid.
     fn accelerate_liquid(&self, _change: SVector<T, D>, _particle: &mut Self::Particle) {}
 
+    /// Gives a particle's liquid another velocity and pressure.
+    fn set_liquid(&self, _liquid: PoreLiquid<T, D>, _particle: &mut Self::Particle) {}
+
     /// Share of the volume that the liquid fills.
     fn porosity(&self) -> T {
         T::one()

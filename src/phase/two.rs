@@ -187,6 +187,11 @@ impl<T: Scalar, const D: usize> Phase<T, D> for TwoPhase<T> {
     }
 
     #[inline(always)]
+    fn set_liquid(&self, liquid: PoreLiquid<T, D>, particle: &mut PoreLiquid<T, D>) {
+        *particle = liquid;
+    }
+
+    #[inline(always)]
     fn porosity(&self) -> T {
         self.porosity
     }

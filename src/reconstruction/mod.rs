@@ -144,6 +144,15 @@ pub enum Filling {
     Few,
 }
 
+/// Parts of a cell that are crossed in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossed<T> {
+    /// By a wave.
+    pub wave: T,
+    /// By the particles.
+    pub motion: T,
+}
+
 /// Turns particle data into quadrature points with weighted values.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not reconstruct scalar `{T}` in `{D}` dimensions",
@@ -197,6 +206,9 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         amount: impl Fn(usize) -> Q,
         sink: impl FnMut(&Point<T, D>, Q),
     );
+
+    /// A liquid flows: its pressure will be reconstructed with the stress.
+    fn expect_liquid(&mut self) {}
 
     /// Takes in the field that [`Reconstruction::integrate_cells`] or [`Reconstruction::integrate_four`] will stream next, where a
     /// cell's fit wants the values of its neighbours.
@@ -263,14 +275,14 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
     }
 
     /// Moves the particles' `values` towards what the reconstruction sees of them; `weights` (masses) make the fit keep
-    /// the weighted sum. `crossed` says for each occupied cell which part of it a wave crosses in this step: the measure of time
-    /// for a relaxation. The stepper calls it for the stress, unweighted, right after the force is assembled (a law with a state is
+    /// the weighted sum. `crossed` says for each occupied cell which part of it a wave and its particles cross in this step: the measures of
+    /// time for a relaxation. The stepper calls it for the stress, unweighted, right after the force is assembled (a law with a state is
     /// then strained towards the moved stress), and for the velocity, weighted, before it is mapped to the DOFs.
     fn relax<Q: Field<T>>(
         &mut self,
         _cloud: &Cloud<'_, T, D>,
         _weights: Option<&[T]>,
-        _crossed: &[T],
+        _crossed: &[Crossed<T>],
         _values: &mut [Q],
     ) {
     }

@@ -112,15 +112,15 @@ where
     }
 }
 
-/// Whether there is no scene of two phases: relaxed TLS knows one only; in the plane, where each stepper takes seconds to compile,
-/// laws with a history are left to callers that name the types, and so is everything in space.
+/// Whether there is no scene of two phases: relaxed TLS knows one only beyond one axis; in the plane, where each stepper takes seconds
+/// to compile, laws with a history are left to callers that name the types, and so is everything in space.
 const fn one_phase_only<T, const D: usize, R, L>() -> bool
 where
     T: Scalar,
     R: Reconstruction<T, D>,
     L: ConstitutiveLaw<T, D>,
 {
-    R::PARTICLE_MATRIX || D > 2 || D == 2 && size_of::<L::State>() > 0
+    D > 2 || D == 2 && (R::PARTICLE_MATRIX || size_of::<L::State>() > 0)
 }
 
 /// What a stepper needs besides basis, reconstruction, phase and particles.

@@ -5,10 +5,13 @@ use nalgebra::{SMatrix, SVector};
 use super::by_four;
 use super::cell_sums::CellSums;
 use super::lanes::{self, Bodies, Fits, Pass, at_fixed_points};
+use super::matrix::MassMatrix;
+use super::pairs::Pairs;
 use super::spans::{Spans, share};
 use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::field::Pair;
+use crate::grid::Grid;
 use crate::law::ConstitutiveLaw;
 use crate::parallel::{PerSpan, Windows, add_up, each_span};
 use crate::phase::Phase;
@@ -19,7 +22,7 @@ use crate::scalar::Scalar;
 /// its function over the particles: 2/3 in a full linear cell, nothing for a DOF that the first particle of a free end has
 /// just come to see. Such a DOF would have to carry that particle's whole acceleration, one over the function's value
 /// times as large, or round-off so magnified.
-const WEAK: f64 = 0.3;
+pub(super) const WEAK: f64 = 0.3;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
 where
@@ -185,25 +188,13 @@ where
     }
 
     fn assemble_particle_matrix(&mut self) {
-        let (basis, grid, matrix) = (&self.basis, &self.grid, &mut self.dofs.matrix);
-        matrix.clear();
         let bodies = Bodies {
             positions: &self.particles.position,
             cells: self.bins.cells(),
             masses: &self.particles.mass,
         };
-        if const { lanes::apply_to_values::<T, D, B>() } {
-            by_four::add_pairs(basis, grid, bodies, matrix);
-        } else {
-            let pairs = &mut self.pairs;
-            let particles = bodies.positions.iter().zip(bodies.masses).zip(bodies.cells);
-            for ((x, &mass), cell) in particles {
-                pairs.turn_to(cell, matrix);
-                basis.for_each(grid, cell, x, |i, phi, _| pairs.see(i, phi));
-                pairs.add(mass);
-            }
-            pairs.flush(matrix);
-        }
+        let matrix = &mut self.dofs.matrix;
+        fill_with_pairs(&self.basis, &self.grid, bodies, &mut self.pairs, matrix);
         if D > 1 {
             self.tie_partly_filled_cells();
         }
@@ -227,6 +218,27 @@ where
                 .for_each(&self.grid, cell, &x, |i, phi, _| force[i] += load * phi);
         }
     }
+}
+
+/// `M_ij = sum_p m_p phi_i phi_j`, to be completed.
+pub(super) fn fill_with_pairs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    basis: &B,
+    grid: &Grid<T, D>,
+    bodies: Bodies<'_, T, D>,
+    pairs: &mut Pairs<T, D>,
+    matrix: &mut MassMatrix<T, D>,
+) {
+    matrix.clear();
+    if const { lanes::apply_to_values::<T, D, B>() } {
+        return by_four::add_pairs(basis, grid, bodies, matrix);
+    }
+    let particles = bodies.positions.iter().zip(bodies.masses).zip(bodies.cells);
+    for ((x, &mass), cell) in particles {
+        pairs.turn_to(cell, matrix);
+        basis.for_each(grid, cell, x, |i, phi, _| pairs.see(i, phi));
+        pairs.add(mass);
+    }
+    pairs.flush(matrix);
 }
 
 /// Stress of each particle. As a function of its own it is one type for all laws, and what calls it is compiled once.

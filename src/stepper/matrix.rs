@@ -75,6 +75,11 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
         &mut self.band
     }
 
+    /// The band of one dimension, as it was filled.
+    pub(super) fn band(&self) -> &Banded<T> {
+        &self.band
+    }
+
     pub(super) fn clear(&mut self) {
         self.band.clear();
         self.lattice.clear();

@@ -54,7 +54,7 @@ use crate::law::ConstitutiveLaw;
 use crate::mass::VelocityMass;
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, Cut, Reconstruction};
+use crate::reconstruction::{Cloud, Crossed, Cut, Reconstruction};
 use crate::scalar::Scalar;
 use dofs::Dofs;
 use order::Order;
@@ -113,11 +113,13 @@ where
     /// Sums of both phases side by side, and what moves the particles; empty where no liquid flows.
     sums: Vec<liquid::Sums<T, D>>,
     motion: Vec<[SVector<T, D>; 2]>,
+    /// Of no DOF but for a liquid that flows with the particles' consistent matrices.
+    joint: liquid::Joint<T, D>,
     spans: Spans<T, D>,
     /// Whether a particle came near the border of the grid's window.
     strayed: bool,
     /// Part of each occupied cell that a wave crosses in this step; empty where nothing relaxes.
-    crossed: Vec<T>,
+    crossed: Vec<Crossed<T>>,
     /// Stresses as the relaxation would have them; empty but for laws that remember.
     relaxed: Vec<SMatrix<T, D, D>>,
     /// What the particles of a cell add to their matrix.
@@ -159,7 +161,7 @@ where
         particles.validate()?;
         phase.validate()?;
         refuse_unknown_stress(&law, &particles)?;
-        if P::FLOWS && R::PARTICLE_MATRIX {
+        if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {
             return Err(SetupError::OnePhaseOnly);
         }
         for point in &surface {
@@ -213,6 +215,7 @@ where
             drag: Vec::new(),
             sums: Vec::new(),
             motion: Vec::new(),
+            joint: liquid::Joint::none(),
             spans,
             strayed: false,
             crossed: Vec::with_capacity(crossed_count),
@@ -225,6 +228,9 @@ where
             steps: 0,
             diagnostics: Diagnostics::new(mass, P::FLOWS),
         };
+        if P::FLOWS {
+            stepper.reconstruction.expect_liquid();
+        }
         stepper.allocate_dofs();
         stepper.allocate();
         Ok(stepper)
@@ -241,6 +247,9 @@ where
             self.drag = vec![T::zero(); count];
             self.sums = vec![liquid::Sums::zero(); count];
             self.motion = vec![[SVector::zeros(); 2]; count];
+            if R::PARTICLE_MATRIX {
+                self.joint = liquid::Joint::new(basis, grid, self.particles.len());
+            }
         }
         self.face_dofs = Face::all::<D>()
             .map(|face| {
@@ -455,9 +464,10 @@ where
             + self.liquid.bytes()
             + self.spans.bytes()
             + self.pairs.bytes()
-            + size_of::<T>() * self.crossed.capacity()
+            + size_of::<Crossed<T>>() * self.crossed.capacity()
             + size_of::<SMatrix<T, D, D>>() * self.relaxed.capacity()
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()
+            + self.joint.bytes()
             + both * self.drag.len()
     }
 

@@ -6,7 +6,7 @@ use super::Stepper;
 use crate::basis::BasisFamily;
 use crate::law::ConstitutiveLaw;
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, Reconstruction};
+use crate::reconstruction::{Cloud, Crossed, Reconstruction};
 use crate::scalar::Scalar;
 use crate::tensor::determinant;
 
@@ -51,7 +51,7 @@ where
 
     /// Moves the stress of a law that remembers, which follows from its state or is bound to it, by small strains: stress, state
     /// and volume stay those of one material.
-    fn strain_to_relaxed(&mut self) {
+    pub(super) fn strain_to_relaxed(&mut self) {
         let (law, particles) = (&self.law, &mut self.particles);
         let large_strain = law.large_strain();
         for (p, relaxed) in self.relaxed.iter().enumerate() {
@@ -82,8 +82,8 @@ where
     }
 
     /// Part of each occupied cell that a wave crosses in a step, at the cell's first particle.
-    fn measure_crossings(&mut self, dt: T) {
-        let (law, particles) = (&self.law, &self.particles);
+    pub(super) fn measure_crossings(&mut self, dt: T) {
+        let (law, phase, particles) = (&self.law, &self.phase, &self.particles);
         let across = dt / self.grid.cell_size().min();
         self.crossed.clear();
         let cells = self.bins.occupied().iter();
@@ -91,9 +91,18 @@ where
             let first = self.bins.particles_in(cell as usize).first();
             let p = first.map_or(0, |&p| p as usize);
             let density = particles.mass[p] / particles.volume[p];
-            let speed = law.wave_speed(density, &particles.stress[p], &particles.state[p]);
+            let mut speed = law.wave_speed(density, &particles.stress[p], &particles.state[p]);
+            if P::FLOWS {
+                // Of both phases together.
+                let stiffness = speed * speed * density + phase.liquid_stiffness();
+                let liquid = phase.liquid_mass(particles.volume[p]) / particles.volume[p];
+                speed = (stiffness / (density + liquid)).sqrt();
+            }
             // Also where a law has no wave any more: there is then nothing to relax.
-            (speed * across).max(T::zero())
+            Crossed {
+                wave: (speed * across).max(T::zero()),
+                motion: particles.velocity[p].norm() * across,
+            }
         }));
     }
 }

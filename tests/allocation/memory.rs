@@ -64,7 +64,7 @@ fn a_stepper_takes_what_it_says() {
 #[test]
 fn a_two_phase_stepper_takes_what_it_says() {
     let (soil, law) = table_6(1e-4);
-    for method in Method::NINE {
+    for method in Method::ALL {
         for mass in [VelocityMass::Consistent, VelocityMass::Lumped] {
             let column = Column {
                 cells: CELLS,

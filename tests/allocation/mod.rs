@@ -53,7 +53,7 @@ impl MethodVisitor<f64> for LargeBar {
 #[test]
 fn no_two_phase_step_allocates() {
     let (soil, law) = table_6(1e-4);
-    for method in Method::NINE.into_iter().chain([Method::sub_points(4)]) {
+    for method in Method::ALL.into_iter().chain([Method::sub_points(4)]) {
         for mass in [
             VelocityMass::Consistent,
             VelocityMass::Constrained,

@@ -90,10 +90,6 @@ where
         B: BasisFamily<f64, 1> + Send + 'static,
         R: Reconstruction<f64, 1> + Clone + Send + 'static,
     {
-        // Known at compile time: no stepper is built for what knows one phase only.
-        if R::PARTICLE_MATRIX {
-            unreachable!("{}", materialpoint::error::SetupError::OnePhaseOnly);
-        }
         let column = self.column;
         let phase = column.phase();
         let grid = Grid::new(vector![0.0], vector![1.0], [column.cells]).unwrap();

@@ -64,7 +64,7 @@ fn explicit_drag_is_stable_below_the_predicted_step_and_not_above() {
     let lumped = VelocityMass::Lumped;
     for exponent in 1..=9 {
         let permeability = 10.0_f64.powi(-exponent);
-        for method in Method::NINE {
+        for method in Method::ALL {
             let limit = predicted(method, permeability, Drag::Explicit, lumped);
             let stable = |share| is_stable(method, permeability, Drag::Explicit, lumped, share);
             match limit.mechanism {
@@ -86,7 +86,7 @@ fn implicit_drag_is_stable_up_to_the_waves_step() {
     let lumped = VelocityMass::Lumped;
     for exponent in 1..=9 {
         let permeability = 10.0_f64.powi(-exponent);
-        for method in Method::NINE {
+        for method in Method::ALL {
             let limit = predicted(method, permeability, Drag::Implicit, lumped);
             assert_eq!(limit.mechanism, Mechanism::Wave);
             let stable = |share| is_stable(method, permeability, Drag::Implicit, lumped, share);
@@ -113,7 +113,7 @@ fn the_drag_limit_is_the_closed_form() {
 fn table_of_observed_over_predicted_steps() {
     for mass in [VelocityMass::Lumped, VelocityMass::Consistent] {
         for drag in [Drag::Explicit, Drag::Implicit] {
-            for method in Method::NINE {
+            for method in Method::ALL {
                 let mut row = Vec::new();
                 for exponent in 1..=9 {
                     let permeability = 10.0_f64.powi(-exponent);

@@ -21,6 +21,7 @@ const END: f64 = 0.4;
 const LINEAR: Basis = Basis::Linear;
 const DUAL_DOMAIN: Basis = Basis::DualDomain;
 const BSPLINE: Basis = Basis::BSpline { degree: 2 };
+const RELAXED: ReconstructionKind = ReconstructionKind::RelaxedTaylor;
 
 #[derive(Clone, Copy, Debug)]
 struct Found {
@@ -88,7 +89,11 @@ fn run(method: Method, permeability: f64, drag: Drag, mass: VelocityMass, step: 
 }
 
 /// Basis, reconstruction, the prototype's errors of effective stress and pressure.
-const TABLE: [(Basis, ReconstructionKind, f64, f64); 4] = [
+const TABLE: [(Basis, ReconstructionKind, f64, f64); 7] = [
+    // Our own, without a prototype: of the pressure's error only the inertia is left, which the exact solution does not know.
+    (LINEAR, RELAXED, 2.0e-3, 4.2e-3),
+    (DUAL_DOMAIN, RELAXED, 1.2e-3, 4.2e-3),
+    (BSPLINE, RELAXED, 2.2e-3, 4.0e-3),
     (LINEAR, ReconstructionKind::Taylor, 0.044, 0.0136),
     (DUAL_DOMAIN, ReconstructionKind::Taylor, 0.0191, 0.0070),
     (BSPLINE, ReconstructionKind::Shepard, 0.0216, 0.0067),
@@ -158,7 +163,7 @@ fn table_of_all_nine_methods() {
             if permeability < 1e-4 && drag == Drag::Explicit {
                 continue;
             }
-            for method in Method::NINE {
+            for method in Method::ALL {
                 let found = run(method, permeability, drag, mass, step);
                 println!(
                     "k0 {permeability:.2e} {drag:?} {mass:?} {method:<22} u {:.4e} sigma' {:.2e} p {:.2e} top {:.3} mass {:.0e} momentum {:.0e} crossings {}",

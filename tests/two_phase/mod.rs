@@ -1,4 +1,4 @@
-//! Two phases: a saturated solid on the same stepper, all nine methods.
+//! Two phases: a saturated solid on the same stepper, all twelve methods.
 
 pub mod column;
 mod consolidation;
@@ -7,5 +7,6 @@ mod dimensions;
 mod drag;
 mod equilibrium;
 mod large;
+mod long_waves;
 mod random;
 mod standing_wave;

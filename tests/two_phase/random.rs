@@ -39,9 +39,6 @@ impl MethodVisitor<f64> for &Scene {
         B: BasisFamily<f64, 1> + Send + 'static,
         R: Reconstruction<f64, 1> + Clone + Send + 'static,
     {
-        if R::PARTICLE_MATRIX {
-            unreachable!("{}", materialpoint::error::SetupError::OnePhaseOnly);
-        }
         let grid = Grid::new(vector![0.0], vector![1.0], [self.cells]).unwrap();
         let mut x = self.layout.clone();
         x.sort_by(f64::total_cmp);
@@ -106,7 +103,7 @@ fn scenes() -> impl Strategy<Value = Scene> {
             drag: if explicit { Drag::Explicit } else { Drag::Implicit },
         });
     (
-        0..Method::NINE.len(),
+        0..Method::ALL.len(),
         phase,
         logarithmic(1e4, 1e10),
         any::<bool>(),
@@ -134,7 +131,7 @@ proptest! {
 
     #[test]
     fn both_phases_keep_mass_and_momentum(scene in scenes()) {
-        let method = Method::NINE[scene.method];
+        let method = Method::ALL[scene.method];
         let mut simulation = method.dispatch(&scene).unwrap();
         let forcing = loaded(scene.load);
         let Some(CriticalStep { step, .. }) = simulation.critical_step(&forcing) else {
@@ -156,7 +153,7 @@ proptest! {
 
     #[test]
     fn too_large_a_step_ends_in_a_typed_error_or_not_at_all(scene in scenes()) {
-        let mut simulation = Method::NINE[scene.method].dispatch(&scene).unwrap();
+        let mut simulation = Method::ALL[scene.method].dispatch(&scene).unwrap();
         let forcing = loaded(scene.load);
         let Some(CriticalStep { step, .. }) = simulation.critical_step(&forcing) else {
             return Ok(());

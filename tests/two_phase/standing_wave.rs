@@ -4,18 +4,21 @@
 //! is fixed and impermeable at its base, free and drained at its top, and swings in its first mode, a quarter of a wave:
 //! half of the wave between two walls 2 m apart. Started from the eigenvector of the weakly damped pair.
 //!
-//! Expected: second order in h for all nine methods and every permeability, frequency error at most 2e-3 with 20 cells. With
+//! Expected: fourth order for B-splines with relaxed TLS, 2e-6 with 20 cells; second order in h for all others and every permeability, frequency error at most 2e-3 with 20 cells. With
 //! lumped masses and linear functions the error is (kappa h)^2 / 24 from the stiffness and (kappa h)^2 / 12 from the mapping
 //! of the velocity, 7.7e-4 together; the consistent velocity mass has no such part.
 
 use std::f64::consts::PI;
 
 use materialpoint::mass::VelocityMass;
-use materialpoint::method::Method;
+use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::phase::Drag;
 use materialpoint::reference::two_phase::{StandingWave, TwoPhaseReference};
 
 use super::column::{Column, drained, table_6};
+
+/// Stiffness and mass are of one energy there.
+const BSPLINE_RELAXED: Method = Method::new(Basis::BSpline { degree: 2 }, ReconstructionKind::RelaxedTaylor);
 
 /// Samples in a period.
 const SAMPLES: usize = 40;
@@ -74,7 +77,7 @@ fn errors(method: Method, permeability: f64, cells: usize) -> (f64, f64) {
 #[test]
 fn frequency_and_damping_converge_to_the_exact_eigenvalues() {
     for permeability in [1e-9, 1e-6, 1e-4, 1e-3, 1e-2] {
-        for method in Method::NINE {
+        for method in Method::ALL {
             let [coarse, middle, fine] = [10, 20, 40].map(|cells| errors(method, permeability, cells));
             let orders = [(coarse.0 / middle.0).log2(), (middle.0 / fine.0).log2()];
             println!(
@@ -82,11 +85,17 @@ fn frequency_and_damping_converge_to_the_exact_eigenvalues() {
                 coarse.0, middle.0, fine.0, orders[0], orders[1], coarse.1, middle.1, fine.1
             );
             assert!(middle.0 <= 2e-3, "{method} k = {permeability}: {}", middle.0);
+            assert!(fine.1 < 2e-4, "{method} k = {permeability}: damping {}", fine.1);
+            if method == BSPLINE_RELAXED {
+                // What is left with a strong drag; else the drag's error in time is.
+                let bound = if permeability < 1e-5 { 2e-6 } else { 2e-4 };
+                assert!(middle.0 < bound, "k = {permeability}: {}", middle.0);
+                continue;
+            }
             assert!(
                 orders.iter().all(|order| (1.8..2.3).contains(order)),
                 "{method} k = {permeability}: {orders:?}"
             );
-            assert!(fine.1 < 2e-4, "{method} k = {permeability}: damping {}", fine.1);
         }
     }
 }

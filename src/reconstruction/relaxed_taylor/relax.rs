@@ -9,7 +9,7 @@ use crate::field::Field;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::each_span;
 use crate::reconstruction::taylor::local;
-use crate::reconstruction::{Cloud, Patch, Reconstruction};
+use crate::reconstruction::{Cloud, Crossed, Patch, Reconstruction};
 use crate::scalar::Scalar;
 use crate::taylor::{CellFit, MOST_COMPONENTS, Rights, factorise};
 
@@ -18,7 +18,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     pub(super) fn relax_towards_both<Q: Field<T>>(
         &mut self,
         cloud: &Cloud<'_, T, D>,
-        crossed: &[T],
+        crossed: &[Crossed<T>],
         values: &mut [Q],
     ) {
         let taken: &[Q] = values;
@@ -38,7 +38,12 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     }
 
     #[inline(never)]
-    fn pull_to_both_in<V: Lanes<T>, Q: Field<T>>(&self, crossed: &[T], first: usize, rows: PullRows<'_, T>) {
+    fn pull_to_both_in<V: Lanes<T>, Q: Field<T>>(
+        &self,
+        crossed: &[Crossed<T>],
+        first: usize,
+        rows: PullRows<'_, T>,
+    ) {
         let sums = self.kept_sums::<Q>();
         let zero = V::splat(T::zero());
         for (k, row) in rows.groups().enumerate() {
@@ -68,13 +73,13 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     }
 
     /// Whether waves are about as fast in the neighbours of a cell as in itself: stress may jump where the material changes.
-    fn are_alike(&self, crossed: &[T], place: usize) -> bool {
-        let [mut slowest, mut fastest] = [crossed[place]; 2];
+    fn are_alike(&self, crossed: &[Crossed<T>], place: usize) -> bool {
+        let [mut slowest, mut fastest] = [crossed[place].wave; 2];
         for other in self.fits[place / LANES].neighbours.iter().flatten() {
             let other = other[place % LANES];
             if other != NONE {
-                slowest = slowest.min(crossed[other as usize]);
-                fastest = fastest.max(crossed[other as usize]);
+                slowest = slowest.min(crossed[other as usize].wave);
+                fastest = fastest.max(crossed[other as usize].wave);
             }
         }
         fastest <= slowest * T::lit(ALIKE)
@@ -87,7 +92,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         &self,
         cloud: &Cloud<'_, T, D>,
         place: usize,
-        crossed: &[T],
+        crossed: &[Crossed<T>],
         values: &mut [Q],
     ) {
         let cell = cloud.bins.occupied()[place] as usize;
@@ -115,7 +120,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         &mut self,
         cloud: &Cloud<'_, T, D>,
         weights: &[T],
-        crossed: &[T],
+        crossed: &[Crossed<T>],
         values: &mut [Q],
     ) {
         let taken: &[Q] = values;
@@ -141,7 +146,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         &self,
         cloud: &Cloud<'_, T, D>,
         weights: &[T],
-        crossed: &[T],
+        crossed: &[Crossed<T>],
         first: usize,
         rows: PullRows<'_, T>,
         values: &[Q],
@@ -180,7 +185,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         cloud: &Cloud<'_, T, D>,
         place: usize,
         weights: &[T],
-        crossed: &[T],
+        crossed: &[Crossed<T>],
         values: &mut [Q],
     ) {
         let cell = cloud.bins.occupied()[place] as usize;

@@ -75,10 +75,9 @@ fn reconstruction(
             "a cubic spline exists in 1-D only and the grid has {dimension} axes; expected \"shepard\", \"taylor\" or \"relaxed-taylor\""
         )));
     }
-    if reconstruction == ReconstructionKind::RelaxedTaylor && phases == PhaseCount::Two {
-        return Err(
-            item.conflict("it knows one phase only so far; expected \"shepard\", \"taylor\" or \"spline\"")
-        );
+    if reconstruction == ReconstructionKind::RelaxedTaylor && phases == PhaseCount::Two && dimension > 1 {
+        return Err(item
+            .conflict("beyond one axis it knows one phase only so far; expected \"shepard\" or \"taylor\""));
     }
     Ok(reconstruction)
 }

@@ -1,6 +1,6 @@
 //! Lumped masses, drag and forces of both phases.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
 use super::super::cell_sums::CellSums;
@@ -11,7 +11,7 @@ use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::law::ConstitutiveLaw;
 use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
+use crate::reconstruction::{Point, Reconstruction};
 use crate::scalar::Scalar;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
@@ -32,6 +32,9 @@ where
             self.sum_everything(&even);
         } else {
             self.sum_masses(R::AMOUNTS_AT_PARTICLES);
+            if R::PARTICLE_MATRIX {
+                self.assemble_matrices();
+            }
             self.integrate_forces(&even);
         }
         self.map_both_before(forcing);
@@ -102,17 +105,23 @@ where
         let (phase, data, effective) = (&self.phase, &self.particles.phase, &self.particles.stress);
         let (basis, whole, liquid) = (&self.basis, &mut self.dofs.force, &mut self.liquid.force);
         let stresses = |p: usize| even.rest(phase, &effective[p], &data[p]);
-        self.reconstruction
-            .integrate(&cloud, stresses, |point, Pair(total, pressure)| {
-                let add = |i: usize, _, gradient: SVector<T, D>| {
-                    whole[i] -= total * gradient;
-                    liquid[i] -= gradient * pressure;
-                };
-                if point.moves {
-                    basis.for_each(cloud.grid, &point.cell, &point.position, add);
-                } else {
-                    basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);
-                }
-            });
+        let sink = |point: &Point<T, D>, Pair(total, pressure): Pair<SMatrix<T, D, D>, T>| {
+            let add = |i: usize, _, gradient: SVector<T, D>| {
+                whole[i] -= total * gradient;
+                liquid[i] -= gradient * pressure;
+            };
+            if point.moves {
+                basis.for_each(cloud.grid, &point.cell, &point.position, add);
+            } else {
+                basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);
+            }
+        };
+        if R::KEEPS_FITS {
+            self.reconstruction.take_in_field(&cloud, &stresses);
+            let cells = 0..self.bins.occupied().len();
+            self.reconstruction.integrate_cells(&cloud, cells, stresses, sink);
+        } else {
+            self.reconstruction.integrate(&cloud, stresses, sink);
+        }
     }
 }

@@ -7,14 +7,21 @@
 //! $m_w = \bar m_w/n$ ([`mod@crate::phase`]),
 //!
 //! $$m_w a_w = f_w + d(v_s - v_w) + m_w b,\qquad m_s a_s + \bar m_w a_w = f + (m_s + \bar m_w) b.$$
+//!
+//! A reconstruction with the particles' consistent matrices ([`crate::reconstruction::Reconstruction::PARTICLE_MATRIX`]) solves the
+//! same two balances with these (`joint`), in one dimension so far.
 
 mod acceleration;
 mod advance;
+mod consistent;
 mod critical;
 mod dof;
 mod forces;
+mod joint;
+mod relax;
 mod surface;
 mod velocity;
 
 pub(super) use critical::Coupled;
 pub(super) use dof::Sums;
+pub(super) use joint::Joint;

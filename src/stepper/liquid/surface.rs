@@ -40,6 +40,11 @@ fn is_held<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePo
     matches!(forcing.face(point.face), FaceCondition::Held { .. })
 }
 
+/// Whether the liquid does not pass a surface, which no wall holds.
+pub(super) fn is_sealed<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> bool {
+    !is_held(forcing, point) && forcing.pores(point.face) == PoreCondition::Sealed
+}
+
 /// Force per area (Pa) on the whole.
 fn traction<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> SVector<T, D> {
     match forcing.face(point.face) {
@@ -117,7 +122,7 @@ where
     pub(super) fn seal_surfaces(&mut self, dt: T, forcing: &Forcing<T, D>) {
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
-            if is_held(forcing, point) || forcing.pores(point.face) != PoreCondition::Sealed {
+            if !is_sealed(forcing, point) {
                 continue;
             }
             let axis = point.face.axis;

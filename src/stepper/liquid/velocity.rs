@@ -41,7 +41,12 @@ where
     /// `v_p += dt sum_i phi_i(x_p) a_i` for both phases, and the DOF velocities from the updated particles.
     pub(in super::super) fn update_both_velocities(&mut self, dt: T, forcing: &Forcing<T, D>) {
         self.lay_accelerations();
-        let totals = if R::AMOUNTS_AT_PARTICLES {
+        let totals = if R::PARTICLE_MATRIX {
+            let totals = self.accelerate_particles(dt);
+            self.relax_both(dt);
+            self.map_particles_of_both();
+            totals
+        } else if R::AMOUNTS_AT_PARTICLES {
             self.accelerate_and_sum_particles(dt)
         } else {
             let totals = self.accelerate_particles(dt);
@@ -207,7 +212,9 @@ where
         ];
         for (dofs, walls) in [&mut self.dofs, &mut self.liquid].into_iter().zip(walls) {
             let mass = self.velocity_mass;
-            if R::AMOUNTS_AT_PARTICLES {
+            if R::PARTICLE_MATRIX {
+                dofs.solve(Unknown::Velocity, mass, &walls, fresh, |velocity, _| velocity);
+            } else if R::AMOUNTS_AT_PARTICLES {
                 divide(&mut dofs.velocity, &dofs.mass);
             } else if mass == VelocityMass::Lumped {
                 divide(&mut dofs.velocity, &dofs.lumped);

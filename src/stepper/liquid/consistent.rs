@@ -1,0 +1,154 @@
+//! The stages of two phases that differ where the particles' consistent matrices are used.
+
+use nalgebra::SVector;
+
+use super::super::acceleration::Walls;
+use super::super::cell_sums::CellSums;
+use super::super::forces::{WEAK, fill_with_pairs};
+use super::super::lanes::Bodies;
+use super::super::{Forcing, Stepper};
+use super::joint::Joint;
+use super::surface::is_sealed;
+use crate::basis::BasisFamily;
+use crate::field::Pair;
+use crate::law::ConstitutiveLaw;
+use crate::phase::{Drag, Phase};
+use crate::reconstruction::Reconstruction;
+use crate::scalar::Scalar;
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    /// The matrices of both masses and of the drag.
+    pub(super) fn assemble_matrices(&mut self) {
+        let (phase, particles) = (&self.phase, &self.particles);
+        let n = phase.porosity();
+        let Joint {
+            liquid_mass,
+            drag_of,
+            drag,
+            ..
+        } = &mut self.joint;
+        let bodies = particles.mass.iter().zip(&particles.volume);
+        for ((mass, drag), (&solid_mass, &volume)) in liquid_mass.iter_mut().zip(&mut drag_of[..]).zip(bodies)
+        {
+            *mass = phase.liquid_mass(volume);
+            *drag = n * phase.drag(solid_mass, volume);
+        }
+        let filled = [
+            (&particles.mass[..], &mut self.dofs.matrix),
+            (&liquid_mass[..], &mut self.liquid.matrix),
+            (&drag_of[..], drag),
+        ];
+        for (masses, matrix) in filled {
+            let bodies = Bodies {
+                positions: &particles.position,
+                cells: self.bins.cells(),
+                masses,
+            };
+            fill_with_pairs(&self.basis, &self.grid, bodies, &mut self.pairs, matrix);
+            matrix.complete(Some(T::lit(WEAK)));
+        }
+    }
+
+    /// Turns the forces of both phases into accelerations.
+    pub(super) fn solve_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
+        let implicit = self.phase.drag_treatment() == Drag::Implicit;
+        let (n, b) = (self.phase.porosity(), forcing.body_force);
+        let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
+        let Joint {
+            drag,
+            right,
+            response,
+            ..
+        } = &mut self.joint;
+        // No response is kept yet: there is room for the slips and what resists them.
+        let (slips, resistance) = response.split_at_mut(solid.velocity.len());
+        let velocities = solid.velocity.iter().zip(&liquid.velocity);
+        for (slip, (of_solid, of_liquid)) in slips.iter_mut().zip(velocities) {
+            *slip = of_solid - of_liquid;
+        }
+        resistance.fill(SVector::zeros());
+        drag.band().add_product(slips, resistance);
+        for (i, resistance) in resistance.iter().enumerate() {
+            let (m_s, m_w) = (solid.mass[i], liquid.mass[i]);
+            right[2 * i] = solid.force[i] + b * (m_s + m_w);
+            right[2 * i + 1] = liquid.force[i] * n + b * m_w + resistance;
+        }
+        let joint = &mut self.joint;
+        let drag_step = if implicit { dt } else { T::zero() };
+        joint.assemble(solid.matrix.band(), liquid.matrix.band(), drag_step);
+        joint.solve([
+            Walls::of_solid(&self.face_dofs, forcing),
+            Walls::of_liquid(&self.face_dofs, forcing),
+        ]);
+        self.seal_jointly(dt, forcing);
+        let accelerations = self.dofs.force.iter_mut().zip(&mut self.liquid.force);
+        for (both, (of_solid, of_liquid)) in self.joint.right.chunks_exact(2).zip(accelerations) {
+            *of_solid = both[0];
+            *of_liquid = both[0] + both[1];
+        }
+    }
+
+    /// As [`Stepper::seal_surfaces`], with the answer of all DOFs to the pressure.
+    fn seal_jointly(&mut self, dt: T, forcing: &Forcing<T, D>) {
+        for k in 0..self.surface.len() {
+            let point = &self.surface[k];
+            if !is_sealed(forcing, point) {
+                continue;
+            }
+            let axis = point.face.axis;
+            let x = self.surface_position(point);
+            let cell = self.bins.cell_of(point.particle);
+            let (basis, grid, joint) = (&self.basis, &self.grid, &mut self.joint);
+            joint.response.fill(SVector::zeros());
+            basis.for_each(grid, cell, &x, |i, phi, _| {
+                joint.response[2 * i + 1][axis] += phi;
+            });
+            joint.respond([
+                Walls::of_solid(&self.face_dofs, forcing),
+                Walls::of_liquid(&self.face_dofs, forcing),
+            ]);
+            let (mut slip, mut gain) = (T::zero(), T::zero());
+            basis.for_each(grid, cell, &x, |i, phi, _| {
+                let velocity = self.liquid.velocity[i][axis] - self.dofs.velocity[i][axis];
+                slip += (velocity + joint.right[2 * i + 1][axis] * dt) * phi;
+                gain += joint.response[2 * i + 1][axis] * phi * dt;
+            });
+            if gain <= T::zero() {
+                continue;
+            }
+            let pressure = -slip / gain;
+            for (acceleration, response) in joint.right.iter_mut().zip(&joint.response) {
+                *acceleration += response * pressure;
+            }
+        }
+    }
+
+    /// Momenta of the DOFs straight from the particles, with the masses of the matrices.
+    pub(super) fn map_particles_of_both(&mut self) {
+        let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
+        let (solid, liquid) = (&mut self.dofs.velocity[..], &mut self.liquid.velocity[..]);
+        solid.fill(SVector::zeros());
+        liquid.fill(SVector::zeros());
+        let mut momenta = CellSums::new(basis, grid);
+        let mut sink = |i: usize, Pair(q_s, q_w)| {
+            solid[i] += q_s;
+            liquid[i] += q_w;
+        };
+        let particles = &self.particles;
+        let places = particles.position.iter().zip(self.bins.cells());
+        let bodies = particles.mass.iter().zip(&self.joint.liquid_mass);
+        let motion = particles.velocity.iter().zip(&particles.phase);
+        for (((x, cell), (&m_s, &m_w)), (velocity, data)) in places.zip(bodies).zip(motion) {
+            let (q_s, q_w) = (velocity * m_s, phase.liquid(data).velocity * m_w);
+            momenta.add(cell, x, |phi, _| Pair(q_s * phi, q_w * phi), &mut sink);
+        }
+        momenta.flush(&mut sink);
+    }
+}

@@ -1,0 +1,73 @@
+//! The reconstruction's touch on the particles of two phases.
+
+use super::super::Stepper;
+use super::joint::Joint;
+use crate::basis::BasisFamily;
+use crate::field::Pair;
+use crate::law::ConstitutiveLaw;
+use crate::phase::{Phase, PoreLiquid};
+use crate::reconstruction::{Cloud, Reconstruction};
+use crate::scalar::Scalar;
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    /// Effective stress and pressure after the forces are assembled from them, the velocities of both phases, each weighted with
+    /// its masses, after their update and before they are mapped.
+    pub(super) fn relax_both(&mut self, dt: T) {
+        self.measure_crossings(dt);
+        let (crossed, phase) = (&self.crossed[..], &self.phase);
+        let Joint {
+            liquid_mass,
+            state,
+            liquid_velocity,
+            ..
+        } = &mut self.joint;
+        let particles = &mut self.particles;
+        let copies = state.iter_mut().zip(&mut liquid_velocity[..]);
+        for ((state, velocity), (stress, data)) in copies.zip(particles.stress.iter().zip(&particles.phase)) {
+            let liquid = phase.liquid(data);
+            (*state, *velocity) = (Pair(*stress, liquid.pressure), liquid.velocity);
+        }
+        let cloud = Cloud {
+            grid: &self.grid,
+            bins: &self.bins,
+            positions: &particles.position,
+            volumes: &particles.volume,
+            cuts: &self.cuts,
+        };
+        let reconstruction = &mut self.reconstruction;
+        reconstruction.relax(&cloud, None, crossed, state);
+        reconstruction.relax(&cloud, Some(&liquid_mass[..]), crossed, liquid_velocity);
+        let mass = Some(&particles.mass[..]);
+        reconstruction.relax(&cloud, mass, crossed, &mut particles.velocity);
+        self.take_in_relaxed();
+    }
+
+    fn take_in_relaxed(&mut self) {
+        let (phase, particles, joint) = (&self.phase, &mut self.particles, &self.joint);
+        let relaxed = joint.state.iter().zip(&joint.liquid_velocity);
+        for (data, (&Pair(_, pressure), &velocity)) in particles.phase.iter_mut().zip(relaxed) {
+            phase.set_liquid(PoreLiquid { velocity, pressure }, data);
+        }
+        let stresses = joint.state.iter().map(|state| state.0);
+        if size_of::<L::State>() == 0 {
+            particles
+                .stress
+                .iter_mut()
+                .zip(stresses)
+                .for_each(|(to, stress)| *to = stress);
+        } else {
+            self.relaxed
+                .iter_mut()
+                .zip(stresses)
+                .for_each(|(to, stress)| *to = stress);
+            self.strain_to_relaxed();
+        }
+    }
+}
