@@ -129,7 +129,10 @@ impl KnownIn<1> for ReconstructionKind {
         Some(match self {
             Self::Shepard => visitor.visit(basis, Shepard),
             Self::Taylor => visitor.visit(basis, Taylor::<T, 1, 3>::for_degree(degree)),
-            Self::RelaxedTaylor => visitor.visit(basis, RelaxedTaylor::<T, 1, 3>::for_degree(degree)),
+            Self::RelaxedTaylor => {
+                let taylor = RelaxedTaylor::<T, 1, 3>::for_basis(&basis);
+                visitor.visit(basis, taylor)
+            }
             Self::Spline => visitor.visit(basis, CubicSpline::for_degree(degree)),
         })
     }
@@ -153,7 +156,7 @@ macro_rules! known_beyond_one_axis {
                         Some(visitor.visit(basis, taylor))
                     }
                     Self::RelaxedTaylor => {
-                        let taylor = RelaxedTaylor::<T, $dimension, $functions>::for_degree(degree);
+                        let taylor = RelaxedTaylor::<T, $dimension, $functions>::for_basis(&basis);
                         Some(visitor.visit(basis, taylor))
                     }
                     Self::Spline => None,

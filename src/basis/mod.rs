@@ -66,6 +66,10 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     /// is much larger then takes memory in proportion to itself. Without it the window is always the whole grid.
     const FOLLOWS_WINDOW: bool = false;
 
+    /// Whether every gradient is one constant in a cell, as that of linear functions along one axis: stresses of particles then
+    /// change alike all over the cell.
+    const CONSTANT_GRADIENT: bool = false;
+
     /// What [`BasisFamily::for_each_at_fixed_point`] visits.
     const AT_FIXED_POINTS: FixedPoints = FixedPoints::Alike;
 

@@ -250,6 +250,8 @@ macro_rules! tensor_product_family {
             const FOLLOWS_WINDOW: bool =
                 $crate::basis::tensor::follows_window::<T, $width, $family>();
 
+            const CONSTANT_GRADIENT: bool = D == 1 && $degree == 1 && $width == 2;
+
             #[inline(always)]
             fn factors<V: $crate::lanes::Lanes<T>>(
                 &self,

@@ -12,7 +12,7 @@ const RELAXED: ReconstructionKind = ReconstructionKind::RelaxedTaylor;
 
 /// Basis; large bar with 8, 4, 3 and 2 particles per cell.
 const BAR: [(Basis, [f64; 4]); 3] = [
-    (LINEAR, [2.61e-3, 3.32e-3, 3.49e-3, 4.64e-3]),
+    (LINEAR, [2.07e-3, 2.37e-3, 2.58e-3, 4.75e-3]),
     (DUAL_DOMAIN, [1.72e-3, 2.08e-3, 2.52e-3, 3.30e-3]),
     (BSPLINE, [3.25e-4, 3.33e-4, 3.35e-4, 4.11e-4]),
 ];
@@ -93,10 +93,15 @@ fn mass_and_momentum_are_kept() {
 }
 
 fn smooth(method: Method, per_cell: usize, end: &str) -> Summary {
+    swing(method, per_cell, (0.08, 80), end)
+}
+
+/// The bar with another velocity (m/s) and number of cells.
+fn swing(method: Method, per_cell: usize, (velocity, cells): (f64, usize), end: &str) -> Summary {
     let set = [
-        "body.0.velocity=[\"0.08*sin(pi*x)\"]",
-        "reference.vibrating-bar.velocity=0.08",
-        "grid.cells=[80]",
+        &format!("body.0.velocity=[\"{velocity:?}*sin(pi*x)\"]")[..],
+        &format!("reference.vibrating-bar.velocity={velocity:?}"),
+        &format!("grid.cells=[{cells}]"),
         &format!("body.0.particles_per_cell=[{per_cell}]"),
         end,
     ];
@@ -104,26 +109,40 @@ fn smooth(method: Method, per_cell: usize, end: &str) -> Summary {
 }
 
 /// Within 0.98 and 1.003 at all times up to 8 s, where the published method has 1.17 (dual domain, lumped) to 13.5 (linear).
-/// Two particles per cell damp a linear basis more; three make it gain from 4 s on (observed, not understood).
 #[test]
 fn the_smooth_run_keeps_its_energy_where_the_published_method_gains() {
     for (basis, ..) in BAR {
         for per_cell in [8, 4, 3, 2] {
             let energy = smooth(Method::new(basis, RELAXED), per_cell, "time.end=8.0").energy;
             let (lowest, highest) = (energy.lowest_ratio.unwrap(), energy.highest_ratio.unwrap());
-            let (least, most) = match (basis, per_cell) {
-                (LINEAR, 2) => (0.92, 1.003),
-                (LINEAR, 3) => (0.98, 1.08),
-                _ => (0.98, 1.003),
-            };
             assert!(
-                lowest > least && highest < most,
+                lowest > 0.98 && highest < 1.003,
                 "{basis}, {per_cell}: {lowest} to {highest}"
             );
         }
     }
     let published = smooth(Method::new(LINEAR, TAYLOR), 8, "time.end=6.0").energy;
     assert_close("published, linear", published.highest_ratio.unwrap(), 1.34, 0.03);
+}
+
+/// Particles that swing to and fro without leaving their cells, and few in large cells: a linear basis gained where slopes from the
+/// neighbours turned about the middle of the particles instead of the cell (1.06, 1.07, 2.8 and 3.2).
+#[test]
+fn particles_off_the_middle_of_their_cells_gain_no_energy() {
+    for (per_cell, velocity, cells) in [(4, 0.02, 80), (3, 0.04, 80), (2, 0.04, 80), (2, 0.08, 40)] {
+        let energy = swing(
+            Method::new(LINEAR, RELAXED),
+            per_cell,
+            (velocity, cells),
+            "time.end=8.0",
+        )
+        .energy;
+        let (lowest, highest) = (energy.lowest_ratio.unwrap(), energy.highest_ratio.unwrap());
+        assert!(
+            lowest > 0.97 && highest < 1.003,
+            "{per_cell}, {velocity} m/s, {cells} cells: {lowest} to {highest}"
+        );
+    }
 }
 
 /// Shocks from 0.79 s on: the exact energy falls, so more than the round-off of the half step that velocities lag is a gain.

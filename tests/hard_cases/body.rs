@@ -131,7 +131,7 @@ impl<L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Copy + 'static> Bodies<L> 
             TaylorLumped => self.stepper(basis, taylor, VelocityMass::Lumped),
             TaylorConsistent => self.stepper(basis, taylor, VelocityMass::Consistent),
             Relaxed => {
-                let relaxed = RelaxedTaylor::<f64, 1, 3>::for_degree(degree);
+                let relaxed = RelaxedTaylor::<f64, 1, 3>::for_basis(&basis);
                 self.stepper(basis, relaxed, VelocityMass::Constrained)
             }
         }

@@ -183,34 +183,65 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
         gram: &KeptProducts<T, NB>,
         sums: &KeptSums<'_, T>,
     ) -> Rights<V, NB> {
-        let mut right = sums.load::<V, NB>(group);
         let wants_wide: [bool; LANES] = std::array::from_fn(|l| !self.own_is_full[l] && self.wide_is_full[l]);
-        let mut seen = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
-        if wants_wide.contains(&true) {
-            seen = self.wide_coefficients(group, sums);
-            let mask = mask::<T, V>(wants_wide);
-            for k in 0..NB {
-                for q in 0..sums.components {
-                    seen[k][q] = seen[k][q] * mask;
-                }
-            }
-            let gram = load::<T, V, NB>(gram);
-            for i in 0..NB {
-                for j in 0..NB {
-                    let product = gram[i.max(j)][i.min(j)];
-                    for q in 0..sums.components {
-                        right[i][q] = right[i][q] - product * seen[j][q];
-                    }
-                }
-            }
+        if !wants_wide.contains(&true) {
+            return self.own_coefficients(&sums.load::<V, NB>(group), sums.components);
         }
-        let own = self.own_coefficients(&right, sums.components);
+        let mut seen = self.wide_coefficients(group, sums);
+        let mask = mask::<T, V>(wants_wide);
         for k in 0..NB {
             for q in 0..sums.components {
-                seen[k][q] = seen[k][q] + own[k][q];
+                seen[k][q] = seen[k][q] * mask;
+            }
+        }
+        let rest = self.rest::<V>(group, gram, sums, &seen);
+        for k in 0..NB {
+            for q in 0..sums.components {
+                seen[k][q] = seen[k][q] + rest[k][q];
             }
         }
         seen
+    }
+
+    /// Coefficients of the own fits of what polynomials leave of the values.
+    #[inline(always)]
+    fn rest<V: Lanes<T>>(
+        &self,
+        group: usize,
+        gram: &KeptProducts<T, NB>,
+        sums: &KeptSums<'_, T>,
+        seen: &Rights<V, NB>,
+    ) -> Rights<V, NB> {
+        let mut right = sums.load::<V, NB>(group);
+        let gram = load::<T, V, NB>(gram);
+        for i in 0..NB {
+            for j in 0..NB {
+                let product = gram[i.max(j)][i.min(j)];
+                for q in 0..sums.components {
+                    right[i][q] = right[i][q] - product * seen[j][q];
+                }
+            }
+        }
+        self.own_coefficients(&right, sums.components)
+    }
+
+    /// Adds to the wide fits the constants with which their slopes leave the means of the cells' fits alone, wherever in the
+    /// cell its particles are: a slope that changes turns about the middle of the cell, and not of the particles.
+    #[inline(always)]
+    pub(super) fn turn_about_the_middle<V: Lanes<T>>(
+        &self,
+        group: usize,
+        gram: &KeptProducts<T, NB>,
+        sums: &KeptSums<'_, T>,
+        wide: &mut Rights<V, NB>,
+    ) {
+        let rest = self.rest::<V>(group, gram, sums, wide);
+        for k in 1..=D {
+            let middle = V::new(std::array::from_fn(|l| middle(gram[k][0][l], gram[0][0][l])));
+            for q in 0..sums.components {
+                wide[0][q] = wide[0][q] - rest[k][q] * middle;
+            }
+        }
     }
 
     /// Coefficients of the own fits from their sums.
@@ -261,6 +292,12 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
     pub(super) fn wide_is_full(&self) -> [bool; LANES] {
         self.wide_is_full
     }
+}
+
+/// Middle of so many points from the sum of their coordinates; of none that of the cell.
+#[inline(always)]
+pub(super) fn middle<T: Scalar>(sum: T, count: T) -> T {
+    if count > T::zero() { sum / count } else { T::zero() }
 }
 
 #[inline(always)]

@@ -7,11 +7,14 @@ mod geometry;
 mod pull;
 mod relax;
 mod stream;
+#[cfg(test)]
+mod tests;
 
 use std::ops::Range;
 
 use super::gauss::GaussRule;
 use super::{Cloud, Crossed, Filling, Four, Point, Reconstruction, Shepard};
+use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::CELLS;
@@ -51,9 +54,9 @@ impl<T: Scalar> Default for Relaxation<T> {
 }
 
 impl<T: Scalar> Relaxation<T> {
-    /// Along one axis 3 and 0.8: larger ones towards the neighbours damp a linear basis less and make it gain sooner. Beyond, 3
-    /// and 0.05: what neighbours see otherwise than a cell itself is relaxed without being strained, so a body under a lasting load
-    /// creeps, and there are more particles in a cell to keep its fit in bounds. See `docs/relaxed-tls.md`.
+    /// Along one axis 3 and 0.8. Beyond, 3 and 0.05: what neighbours see otherwise than a cell itself is relaxed without being
+    /// strained, so a body under a lasting load creeps, and there are more particles in a cell to keep its fit in bounds. See
+    /// `docs/relaxed-tls.md`.
     pub fn in_dimensions(count: usize) -> Self {
         Self {
             own: T::lit(3.0),
@@ -70,6 +73,16 @@ impl<T: Scalar> Relaxation<T> {
             own: T::lit(3.0),
             neighbours: T::lit(0.003),
             motion: T::lit(40.0),
+        }
+    }
+
+    /// For gradients that are constant in a cell: 3 and 3. Slopes of the stress within a cell come from the neighbours alone
+    /// there, late by one over their rate, and cost nothing because they leave the mean alone.
+    pub fn with_constant_gradients() -> Self {
+        Self {
+            own: T::lit(3.0),
+            neighbours: T::lit(3.0),
+            motion: T::zero(),
         }
     }
 
@@ -99,6 +112,9 @@ impl<T: Scalar> Relaxation<T> {
 /// badly the neighbours know: the second term bounds it. The fit of the velocity is weighted with the masses: it keeps the momentum
 /// exactly and never raises the kinetic energy, because it is a projection in the very product that measures it.
 ///
+/// Where the basis has one gradient in a cell ([`RelaxedTaylor::for_basis`]), $\bar\sigma$ gets a constant with which its slope
+/// leaves the mean of the cell's fit alone: the mean is all that does work there.
+///
 /// The shares follow from [`Relaxation`] rates, so that a smaller time step changes nothing. A cell whose particles do not
 /// tell all functions apart takes the fit with its neighbours for the force too, if that one can. The
 /// stress of a law with a state of its own (a deformation, plastic history) is moved by straining the state
@@ -115,6 +131,8 @@ pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {
     relaxation: Relaxation<T>,
     /// Whether that is what suits by itself.
     relaxes_by_default: bool,
+    /// Whether slopes that neighbours give a cell leave its mean alone ([`BasisFamily::CONSTANT_GRADIENT`]).
+    keeps_means: bool,
     cells: Vec<RelaxedCell>,
     /// Sums of products of the functions over the particles, four cells each.
     grams: Vec<KeptProducts<T, NB>>,
@@ -128,13 +146,28 @@ pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
-    /// For a basis of degree `degree`, with the default relaxation.
+    /// For a basis, with the relaxation that suits it.
+    pub fn for_basis<B: BasisFamily<T, D>>(basis: &B) -> Self {
+        let fit = Self::for_degree(basis.degree());
+        if !B::CONSTANT_GRADIENT {
+            return fit;
+        }
+        Self {
+            keeps_means: true,
+            relaxation: Relaxation::with_constant_gradients(),
+            ..fit
+        }
+    }
+
+    /// For a basis of degree `degree` whose gradients are not constant in a cell (for linear functions along one axis see
+    /// [`RelaxedTaylor::for_basis`]), with the default relaxation.
     pub fn for_degree(degree: usize) -> Self {
         Self {
             rule: GaussRule::new(GaussRule::<T, D, NB>::points_for_degree(degree)),
             tolerance: default_tolerance(D),
             relaxation: Relaxation::in_dimensions(D),
             relaxes_by_default: true,
+            keeps_means: false,
             cells: Vec::new(),
             grams: Vec::new(),
             fits: Vec::new(),
@@ -304,44 +337,5 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
             + self.fits.capacity() * size_of::<FourFits<T, D, NB>>()
             + self.sums.capacity() * size_of::<[T; LANES]>()
             + self.pulls.bytes()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-    use nalgebra::vector;
-
-    use super::*;
-    use crate::grid::Grid;
-    use crate::particles::Bins;
-
-    /// Momentum and kinetic energy of unequal masses before and after: the one is kept, the other never raised, and a
-    /// velocity that the fit sees is left alone.
-    #[test]
-    fn a_weighted_relaxation_keeps_the_momentum_and_never_raises_the_energy() {
-        let grid = Grid::new(vector![0.0], vector![3.0], [3]).unwrap();
-        let positions: Vec<_> = (0..17).map(|p| vector![0.05 + 0.17 * f64::from(p)]).collect();
-        let mass: Vec<f64> = (0..17).map(|p| 1.0 + f64::from(p * 7 % 5)).collect();
-        let volumes = vec![0.1; 17];
-        let bins = Bins::new(&grid, &positions).unwrap();
-        let cloud = Cloud::new(&grid, &bins, &positions, &volumes).unwrap();
-        let momentum = |v: &[f64]| mass.iter().zip(v).map(|(m, v)| m * v).sum::<f64>();
-        let energy = |v: &[f64]| mass.iter().zip(v).map(|(m, v)| m * v * v).sum::<f64>();
-        for crossed in [0.1, 0.7, 1.0].map(|wave| Crossed { wave, motion: 0.0 }) {
-            let mut fit = RelaxedTaylor::<f64, 1, 3>::for_degree(2);
-            fit.prepare(&cloud);
-            let rough: Vec<f64> = (0..17).map(|p| f64::from(p * 11 % 7) - 2.0).collect();
-            let mut v = rough.clone();
-            fit.relax(&cloud, Some(&mass), &[crossed; 3], &mut v);
-            assert_relative_eq!(momentum(&v), momentum(&rough), max_relative = 1e-14);
-            assert!(energy(&v) < 0.99 * energy(&rough));
-            let smooth: Vec<f64> = positions.iter().map(|x| 1.0 + x[0] - 0.3 * x[0] * x[0]).collect();
-            let mut v = smooth.clone();
-            fit.relax(&cloud, Some(&mass), &[crossed; 3], &mut v);
-            for (found, expected) in v.iter().zip(&smooth) {
-                assert_relative_eq!(found, expected, epsilon = 1e-13);
-            }
-        }
     }
 }

@@ -1,7 +1,7 @@
 //! Moving values towards the fits.
 
 use super::cells::{Kind, own_fit, wide_coefficients};
-use super::four::{NONE, sums};
+use super::four::{NONE, middle, sums};
 use super::pull::{PullRows, Pulls, keep_pulls};
 use super::stream::difference;
 use super::{ALIKE, GROUPS, RelaxedTaylor};
@@ -59,7 +59,10 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                 }
             }
             let seen = fits.own_coefficients(&sums.load::<V, NB>(group), Q::COMPONENTS);
-            let wide = fits.wide_coefficients::<V>(group, &sums);
+            let mut wide = fits.wide_coefficients::<V>(group, &sums);
+            if self.keeps_means {
+                fits.turn_about_the_middle::<V>(group, &self.grams[group], &sums, &mut wide);
+            }
             let mut pull: Rights<V, NB> = [[zero; MOST_COMPONENTS]; NB];
             let shares = [V::new(own), V::new(neighbours)];
             for k in 0..NB {
@@ -98,12 +101,16 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let cell = cloud.bins.occupied()[place] as usize;
         let (whole, patch) = (Patch::whole(cloud.grid, cell), self.patch(cloud, place));
         let samples = local(cloud, cell, &patch).map(|(p, s)| (s, T::one(), values[p]));
-        let seen = own_fit::<T, D, NB>(cloud, cell, &patch, self.tolerance).coefficients(samples, Q::zero());
-        let wide = if self.are_alike(crossed, place) {
+        let own_fit = own_fit::<T, D, NB>(cloud, cell, &patch, self.tolerance);
+        let seen = own_fit.coefficients(samples, Q::zero());
+        let mut wide = if self.are_alike(crossed, place) {
             wide_coefficients::<T, D, NB, Q>(cloud, place, &self.kept_sums::<Q>(), self.tolerance)
         } else {
             None
         };
+        if let (true, Some(wide)) = (self.keeps_means, &mut wide) {
+            turn_about_the_middle(cloud, [&whole, &patch], &own_fit, values, wide);
+        }
         let [own, neighbours] = self.relaxation.shares(crossed[place]);
         for (p, s) in local(cloud, cell, &patch) {
             let old = values[p];
@@ -203,5 +210,27 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             let unseen = difference(&s, &seen, values[p]);
             values[p].add_scaled(share, unseen);
         }
+    }
+}
+
+/// [`super::four::FourFits::turn_about_the_middle`] in one cell, `whole`, of which there is only `patch`.
+fn turn_about_the_middle<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
+    cloud: &Cloud<'_, T, D>,
+    [whole, patch]: [&Patch<T, D>; 2],
+    own_fit: &CellFit<T, NB>,
+    values: &[Q],
+    wide: &mut [Q; NB],
+) {
+    let points = || local(cloud, cloud.grid.linear(&whole.cell), patch);
+    let seen = &*wide;
+    let samples = points().map(|(p, s)| {
+        let beside = difference(&whole.local(&cloud.positions[p]), seen, values[p]);
+        (s, T::one(), beside.scaled(-T::one()))
+    });
+    let rest = own_fit.coefficients(samples, Q::zero());
+    let count = points().fold(T::zero(), |count, _| count + T::one());
+    for axis in 0..D {
+        let sum = points().fold(T::zero(), |sum, (_, s)| sum + s[axis]);
+        wide[0].add_scaled(-middle(sum, count), rest[1 + axis]);
     }
 }
