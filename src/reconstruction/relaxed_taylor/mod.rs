@@ -6,6 +6,7 @@ mod four;
 mod geometry;
 mod pull;
 mod relax;
+mod relaxation;
 mod stream;
 #[cfg(test)]
 mod tests;
@@ -24,77 +25,13 @@ use cells::{Kind, RelaxedCell};
 use four::{FourFits, KeptProducts};
 use pull::Pulls;
 
+pub use relaxation::Relaxation;
+
 /// Groups of four cells in a span.
 const GROUPS: usize = CELLS / LANES;
 
 /// Wave speeds in neighbouring cells that differ by more than this factor are those of two materials.
 const ALIKE: f64 = 2.0;
-
-/// Largest share towards the fit through neighbours. At a wall that fit extrapolates from one side: near the critical step,
-/// where stresses change their sign from step to step, larger shares lower the limit (by 5 % where 0.1 was taken).
-const MOST_FROM_NEIGHBOURS: f64 = 0.03;
-
-/// Relaxation towards the fits.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Relaxation<T> {
-    /// Of stress and velocity towards the fit of the particle's own cell: a rate in units of one over the time in which a wave
-    /// crosses a cell.
-    pub own: T,
-    /// Of the stress towards the fit through the neighbours too, in the same units.
-    pub neighbours: T,
-    /// The same towards the fit through the neighbours, for each cell that the particles cross.
-    pub motion: T,
-}
-
-impl<T: Scalar> Default for Relaxation<T> {
-    /// That of one dimension.
-    fn default() -> Self {
-        Self::in_dimensions(1)
-    }
-}
-
-impl<T: Scalar> Relaxation<T> {
-    /// Along one axis 3 and 0.8. Beyond, 3 and 0.05: what neighbours see otherwise than a cell itself is relaxed without being
-    /// strained, so a body under a lasting load creeps, and there are more particles in a cell to keep its fit in bounds. See
-    /// `docs/relaxed-tls.md`.
-    pub fn in_dimensions(count: usize) -> Self {
-        Self {
-            own: T::lit(3.0),
-            neighbours: T::lit(if count == 1 { 0.8 } else { 0.05 }),
-            motion: T::zero(),
-        }
-    }
-
-    /// With a liquid in the pores, along one axis: 3, 0.003, and 40 for each cell that the particles cross. A draining layer lasts for
-    /// 1e5 crossings of a wave, in which 0.8 would creep further than it settles; it hardly moves through the grid. What runs
-    /// to and fro does, and is bounded by that.
-    pub fn with_liquid() -> Self {
-        Self {
-            own: T::lit(3.0),
-            neighbours: T::lit(0.003),
-            motion: T::lit(40.0),
-        }
-    }
-
-    /// For gradients that are constant in a cell: 3 and 3. Slopes of the stress within a cell come from the neighbours alone
-    /// there, late by one over their rate, and cost nothing because they leave the mean alone.
-    pub fn with_constant_gradients() -> Self {
-        Self {
-            own: T::lit(3.0),
-            neighbours: T::lit(3.0),
-            motion: T::zero(),
-        }
-    }
-
-    /// Shares of the difference to each fit that a step takes away.
-    #[inline(always)]
-    fn shares(&self, crossed: Crossed<T>) -> [T; 2] {
-        let own = self.own * crossed.wave;
-        let neighbours = self.neighbours * crossed.wave + self.motion * crossed.motion;
-        let sum = T::one() + own + neighbours;
-        [own / sum, (neighbours / sum).min(T::lit(MOST_FROM_NEIGHBOURS))]
-    }
-}
 
 /// Taylor least squares for long runs, our own: published TLS gains energy wherever particles cross cell edges
 /// or do not lie evenly in their cells.
@@ -115,7 +52,8 @@ impl<T: Scalar> Relaxation<T> {
 /// Where the basis has one gradient in a cell ([`RelaxedTaylor::for_basis`]), $\bar\sigma$ gets a constant with which its slope
 /// leaves the mean of the cell's fit alone: the mean is all that does work there.
 ///
-/// The shares follow from [`Relaxation`] rates, so that a smaller time step changes nothing. A cell whose particles do not
+/// The shares follow from [`Relaxation`] rates, for each crossing of a cell by a wave or by the particles, so that a smaller time step
+/// changes nothing. A cell whose particles do not
 /// tell all functions apart takes the fit with its neighbours for the force too, if that one can. The
 /// stress of a law with a state of its own (a deformation, plastic history) is moved by straining the state
 /// ([`ConstitutiveLaw::strain_for`](crate::law::ConstitutiveLaw::strain_for)).
@@ -129,8 +67,8 @@ pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {
     rule: GaussRule<T, D, NB>,
     tolerance: T,
     relaxation: Relaxation<T>,
-    /// Whether that is what suits by itself.
-    relaxes_by_default: bool,
+    /// What takes its place where a liquid flows.
+    with_liquid: Option<Relaxation<T>>,
     /// Whether slopes that neighbours give a cell leave its mean alone ([`BasisFamily::CONSTANT_GRADIENT`]).
     keeps_means: bool,
     cells: Vec<RelaxedCell>,
@@ -155,6 +93,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         Self {
             keeps_means: true,
             relaxation: Relaxation::with_constant_gradients(),
+            with_liquid: Some(Relaxation::with_liquid(basis.degree(), true)),
             ..fit
         }
     }
@@ -166,7 +105,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             rule: GaussRule::new(GaussRule::<T, D, NB>::points_for_degree(degree)),
             tolerance: default_tolerance(D),
             relaxation: Relaxation::in_dimensions(D),
-            relaxes_by_default: true,
+            with_liquid: Some(Relaxation::with_liquid(degree, false)),
             keeps_means: false,
             cells: Vec::new(),
             grams: Vec::new(),
@@ -182,7 +121,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     #[must_use]
     pub fn with_relaxation(mut self, relaxation: Relaxation<T>) -> Self {
         self.relaxation = relaxation;
-        self.relaxes_by_default = false;
+        self.with_liquid = None;
         self
     }
 
@@ -240,8 +179,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
 
     fn expect_liquid(&mut self) {
         self.components = D * D + 1;
-        if self.relaxes_by_default {
-            self.relaxation = Relaxation::with_liquid();
+        if let Some(relaxation) = self.with_liquid {
+            self.relaxation = relaxation;
         }
     }
 
