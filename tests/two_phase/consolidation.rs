@@ -114,14 +114,26 @@ fn compare(basis: Basis) {
 
 /// Relaxed TLS at 20 and 40 cells.
 const RELAXED: [(Basis, [f64; 4], [f64; 4]); 3] = [
-    (LINEAR, [1.0; 4], [1.0; 4]),
-    (DUAL_DOMAIN, [1.0; 4], [1.0; 4]),
-    (BSPLINE, [1.0; 4], [1.0; 4]),
+    (
+        LINEAR,
+        [2.88e-4, 8.36e-4, 4.02e-4, 6.15e-4],
+        [7.66e-5, 2.25e-4, 1.31e-4, 2.01e-4],
+    ),
+    (
+        DUAL_DOMAIN,
+        [4.73e-4, 1.17e-3, 3.38e-4, 5.17e-4],
+        [1.09e-4, 2.88e-4, 8.66e-5, 1.31e-4],
+    ),
+    (
+        BSPLINE,
+        [1.12e-5, 4.16e-5, 2.20e-4, 3.38e-4],
+        [2.69e-6, 2.99e-5, 6.49e-5, 1.00e-4],
+    ),
 ];
 
-/// Most of the error of B-splines is the creep of the fits with the neighbours, which falls with the cube of h.
+/// Measured; with B-splines 1/87, 1/31, 1/4 of published TLS at 20 cells, with linear functions 1/17 in the stresses.
 #[test]
-fn relaxed_tls_has_a_tenth_of_the_errors() {
+fn relaxed_tls_has_smaller_errors() {
     for (basis, coarse, fine) in RELAXED {
         let method = Method::new(basis, ReconstructionKind::RelaxedTaylor);
         for (cells, steps, expected) in [(20, STEPS, coarse), (40, STEPS / 2, fine)] {

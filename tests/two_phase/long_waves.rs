@@ -4,8 +4,9 @@
 //! v = sin(pi x) m/s of both phases: a strain of 2.5 %, particles that cross edges all the time, twelve periods in 0.6 s. The wave
 //! has not broken by then, so the energy is constant.
 //!
-//! Expected: published TLS gains without bound and ends in an error or at a multiple of its energy; relaxed TLS stays within 0.985 and 1.006
-//! of it (0.5 % are the half step by which velocities lag), but for linear functions with four particles per cell, which gain 1.8 %.
+//! Expected: published TLS ends in an error with four per cell, with eight at 2 and 785 times its energy (linear, dual domain; B-splines
+//! gain later). Relaxed TLS stays within 0.985 and 1.006 of it (0.5 % are the half step by which velocities lag), but for
+//! linear functions, which gain 1.8 and 2.2 %.
 
 use materialpoint::law::{Logarithmic, Moduli};
 use materialpoint::mass::VelocityMass;
@@ -62,11 +63,7 @@ fn relaxed_tls_keeps_the_energy_that_published_tls_gains() {
             let relaxed = Method::new(basis, ReconstructionKind::RelaxedTaylor);
             let (lowest, highest) = energies(relaxed, per_cell).unwrap();
             println!("{relaxed}, {per_cell} per cell: {lowest:.4} to {highest:.4}");
-            let bound = if (basis, per_cell) == (Basis::Linear, 4) {
-                1.02
-            } else {
-                1.006
-            };
+            let bound = if basis == Basis::Linear { 1.025 } else { 1.006 };
             assert!(
                 lowest > 0.985 && highest < bound,
                 "{relaxed}, {per_cell}: {lowest} {highest}"
@@ -74,6 +71,9 @@ fn relaxed_tls_keeps_the_energy_that_published_tls_gains() {
             let published = Method::new(basis, ReconstructionKind::Taylor);
             let gained = energies(published, per_cell).map_or(f64::INFINITY, |(_, highest)| highest);
             println!("{published}, {per_cell} per cell: {gained:.4}");
+            if (basis, per_cell) != (Basis::BSpline { degree: 2 }, 8) {
+                assert!(gained > 1.9, "{published}, {per_cell}: {gained}");
+            }
         }
     }
 }
