@@ -61,36 +61,73 @@ impl Group {
     /// The one that begins with particle `first`.
     #[inline(always)]
     fn at<const D: usize>(first: usize, cells: &[Cell<D>]) -> Self {
-        let all = &cells[first..cells.len().min(first + LANES)];
-        let count = all.iter().take_while(|&cell| *cell == all[0]).count();
+        let rest = &cells[first..];
+        let count = match rest.first_chunk() {
+            Some(four) if are_alike(four) => LANES,
+            _ => {
+                let alike = |cell: &&Cell<D>| **cell == rest[0];
+                rest.iter().take(LANES).take_while(alike).count()
+            }
+        };
         Self { first, count }
     }
 
-    /// Of each lane, what the arrays say of its particle.
+    /// `make` of what an array says of the particle of each lane. It is asked in both branches, and not once of what they find:
+    /// four numbers that follow each other are then one load.
     #[inline(always)]
-    fn pick<A: Copy>(self, values: &[A]) -> [A; LANES] {
+    fn with<A: Copy, R>(self, values: &[A], make: impl Fn([A; LANES]) -> R) -> R {
         match values[self.first..].first_chunk() {
-            Some(&values) if self.count == LANES => values,
-            _ => std::array::from_fn(|l| values[self.first + l.min(self.count - 1)]),
+            Some(&lanes) if self.count == LANES => make(lanes),
+            _ => make(std::array::from_fn(|l| {
+                values[self.first + l.min(self.count - 1)]
+            })),
         }
     }
 
     /// A number of each particle, zero in spare lanes.
     #[inline(always)]
     fn amounts<T: Scalar, V: Lanes<T>>(self, values: &[T]) -> V {
-        let mut lanes = self.pick(values);
-        if self.count < LANES {
-            lanes[self.count..].fill(T::zero());
+        match values[self.first..].first_chunk() {
+            Some(&lanes) if self.count == LANES => V::new(lanes),
+            _ => V::new(std::array::from_fn(|l| {
+                if l < self.count {
+                    values[self.first + l]
+                } else {
+                    T::zero()
+                }
+            })),
         }
-        V::new(lanes)
     }
 
     /// The components of a vector.
     #[inline(always)]
     fn vectors<T: Scalar, V: Lanes<T>, const D: usize>(self, values: &[SVector<T, D>]) -> [V; D] {
-        let lanes = self.pick(values);
-        std::array::from_fn(|a| V::new(std::array::from_fn(|l| lanes[l][a])))
+        self.with(values, |lanes| {
+            std::array::from_fn(|a| V::new(std::array::from_fn(|l| lanes[l][a])))
+        })
     }
+
+    /// Gives each particle its lane of a vector.
+    #[inline(always)]
+    fn put<T: Scalar, V: Lanes<T>, const D: usize>(self, values: &mut [SVector<T, D>], vector: &[V; D]) {
+        let lanes = vector.map(V::array);
+        let of_lane = |l: usize| SVector::from_fn(|c, _| lanes[c][l]);
+        match values[self.first..].first_chunk_mut() {
+            Some(all) if self.count == LANES => *all = std::array::from_fn::<_, LANES, _>(of_lane),
+            _ => {
+                for l in 0..self.count {
+                    values[self.first + l] = of_lane(l);
+                }
+            }
+        }
+    }
+}
+
+/// Whether all are the same cell. Without a branch for each: that takes longer than looking at all.
+#[inline(always)]
+fn are_alike<const D: usize>(cells: &[Cell<D>; LANES]) -> bool {
+    let differ = |l: usize| (0..D).fold(0, |bits, axis| bits | (cells[l][axis] ^ cells[0][axis]));
+    (1..LANES).fold(0, |bits, l| bits | differ(l)) == 0
 }
 
 /// Component `(c, a)` of the particles' tensors at `[c][a]`.
