@@ -41,7 +41,7 @@ where
     pub(super) fn mapped_totals(&self, mass: T) -> MassMomentum<T, D> {
         MassMomentum {
             mass,
-            momentum: self.dofs.velocity.iter().fold(SVector::zeros(), |s, q| s + q),
+            momentum: sum(&self.dofs.velocity),
         }
     }
 

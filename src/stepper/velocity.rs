@@ -1,6 +1,7 @@
 //! Stage 3: particle velocities, and DOF velocities from them.
 
 use nalgebra::SVector;
+use num_traits::Zero;
 
 use super::acceleration::Walls;
 use super::cell_sums::CellSums;
@@ -206,6 +207,13 @@ pub(super) fn divide<T: Scalar, const D: usize>(velocity: &mut [SVector<T, D>], 
     }
 }
 
-pub(super) fn sum<T: Scalar>(values: &[T]) -> T {
-    values.iter().fold(T::zero(), |sum, &v| sum + v)
+/// Sum in four parts: otherwise each addition would wait for the one before.
+pub(super) fn sum<Q: Copy + Zero>(values: &[Q]) -> Q {
+    let (fours, rest) = values.as_chunks::<4>();
+    let mut parts = [Q::zero(); 4];
+    for four in fours {
+        parts = std::array::from_fn(|k| parts[k] + four[k]);
+    }
+    let [a, b, c, d] = parts;
+    rest.iter().fold((a + b) + (c + d), |sum, &value| sum + value)
 }
