@@ -41,6 +41,17 @@ pub trait Lanes<T>:
     /// One where the number is greater than the other's, zero elsewhere.
     fn above(self, other: Self) -> Self;
 
+    /// Whether every number lies between the others' and equals neither.
+    #[inline(always)]
+    fn are_between(self, low: Self, high: Self) -> bool
+    where
+        T: PartialOrd,
+    {
+        let (low, high) = (low.array(), high.array());
+        let mut numbers = self.array().into_iter().zip(low.iter().zip(&high));
+        numbers.all(|(x, (low, high))| x > *low && x < *high)
+    }
+
     /// Sums over the lanes of four packs at once.
     fn sums(packs: [Self; 4]) -> [T; 4];
 }
@@ -202,6 +213,11 @@ macro_rules! vector {
             }
 
             #[inline(always)]
+            fn are_between(self, low: Self, high: Self) -> bool {
+                (self.simd_gt(low) & high.simd_gt(self)).all()
+            }
+
+            #[inline(always)]
             fn sums(packs: [Self; 4]) -> [T; 4] {
                 let [a, b, c, d] = Self::transpose(packs);
                 ((a + b) + (c + d)).array()
@@ -229,6 +245,10 @@ mod tests {
             (a / two).above(V::splat(T::zero())).array(),
             [1.0, 0.0, 1.0, 1.0].map(T::lit)
         );
+        let between = |low: f64, high: f64| a.are_between(V::splat(T::lit(low)), V::splat(T::lit(high)));
+        assert!(between(-2.5, 4.5) && !between(-2.0, 4.5) && !between(-2.5, 4.0));
+        let none = V::splat(T::zero() / T::zero());
+        assert!(!none.are_between(a - two, a) && !a.are_between(none, two));
         assert_eq!((a.abs() * two).sqrt().array()[1], T::lit(2.0));
         assert_eq!(
             V::sums([a, two, a + two, a * two]),

@@ -9,6 +9,7 @@ pub use window::Window;
 use nalgebra::SVector;
 
 use crate::error::GridError;
+use crate::lanes::Lanes;
 use crate::scalar::Scalar;
 
 /// Index of a cell along each axis.
@@ -176,6 +177,17 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
             let unit = self.unit_coordinate(axis, cell[axis], x[axis]);
             let doubt = self.doubt[axis];
             unit > doubt && unit < T::one() - doubt
+        })
+    }
+
+    /// The same of four points of which lane by lane `x` are the coordinates along each axis: whether the cell clearly holds all.
+    #[inline(always)]
+    pub(crate) fn clearly_holds_all<V: Lanes<T>>(&self, cell: &Cell<D>, x: &[V; D]) -> bool {
+        (0..D).all(|axis| {
+            let index = V::splat(T::lit(f64::from(cell[axis])));
+            let unit = (x[axis] - V::splat(self.min[axis])) * V::splat(self.inverse_cell_size[axis]) - index;
+            let doubt = self.doubt[axis];
+            unit.are_between(V::splat(doubt), V::splat(T::one() - doubt))
         })
     }
 

@@ -11,7 +11,7 @@ pub use bins::{Bins, Outside};
 #[cfg(feature = "scene")]
 pub(crate) use lattice::Lattice;
 pub use lattice::lattice;
-pub(crate) use movable::{Movable, Movables};
+pub(crate) use movable::{Material, Movable, Movables};
 
 use nalgebra::{SMatrix, SVector};
 

@@ -24,6 +24,14 @@ pub(crate) struct Movable<'a, T, const D: usize, S, P> {
     pub(crate) phase: &'a mut P,
 }
 
+/// What deforms of particles.
+pub(crate) struct Material<'a, T, const D: usize, S, P> {
+    pub(crate) stress: &'a mut [SMatrix<T, D, D>],
+    pub(crate) volume: &'a mut [T],
+    pub(crate) state: &'a mut [S],
+    pub(crate) phase: &'a mut [P],
+}
+
 impl<'a, T, const D: usize, S, P> Movables<'a, T, D, S, P> {
     /// One after the other.
     #[inline(always)]
@@ -45,22 +53,21 @@ impl<'a, T, const D: usize, S, P> Movables<'a, T, D, S, P> {
 }
 
 impl<T, const D: usize, S, P> Movables<'_, T, D, S, P> {
-    /// Where they all are.
+    /// Where they are, and how far they have come since the start.
     #[inline(always)]
-    pub(crate) fn positions(&self) -> &[SVector<T, D>] {
-        self.position
+    pub(crate) fn places(&mut self) -> (&mut [SVector<T, D>], &mut [SVector<T, D>]) {
+        (self.position, self.displacement)
     }
 
-    /// The one with index `p`.
+    /// What `count` of them are made of, from index `first` on.
     #[inline(always)]
-    pub(crate) fn at(&mut self, p: usize) -> Movable<'_, T, D, S, P> {
-        Movable {
-            position: &mut self.position[p],
-            displacement: &mut self.displacement[p],
-            stress: &mut self.stress[p],
-            volume: &mut self.volume[p],
-            state: &mut self.state[p],
-            phase: &mut self.phase[p],
+    pub(crate) fn material(&mut self, first: usize, count: usize) -> Material<'_, T, D, S, P> {
+        let these = first..first + count;
+        Material {
+            stress: &mut self.stress[these.clone()],
+            volume: &mut self.volume[these.clone()],
+            state: &mut self.state[these.clone()],
+            phase: &mut self.phase[these],
         }
     }
 }

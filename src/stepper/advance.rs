@@ -3,14 +3,15 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Stepper;
-use super::lanes::{self, Motion, Pass};
-use super::spans::{Fault, Flaw, Moved};
-use super::window;
+use super::deform::{Motion, Outcome, advance_by_blocks};
+use super::lanes::{self, Pass};
+use super::spans::{Fault, Flaw};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
+use crate::grid::{Cell, Grid};
 use crate::law::ConstitutiveLaw;
 use crate::parallel::{PARTICLES, PerSpan, each_span, many_threads};
-use crate::particles::{Movable, settle};
+use crate::particles::{Movable, Movables};
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -41,49 +42,19 @@ where
             PARTICLES,
             work,
             &|first, (particles, cells, found, bounds)| {
-                if const { lanes::apply::<T, D, B>() } {
-                    let motion = Motion {
-                        velocity,
-                        dt,
-                        law,
-                        phase,
-                    };
-                    let (moved, span) = Pass::new(basis, grid).advance(&motion, first, particles, cells);
-                    bounds.set(span);
-                    return found.set(moved);
-                }
-                let (mut crossings, mut strayed) = (0, false);
-                let moved =
-                    particles
-                        .each()
-                        .zip(cells)
-                        .enumerate()
-                        .try_for_each(|(k, (mut particle, cell))| {
-                            let mut v = SVector::zeros();
-                            let mut gradient = SMatrix::<T, D, D>::zeros();
-                            basis.for_each(grid, cell, particle.position, |i, phi, grad_phi| {
-                                v += velocity[i] * phi;
-                                gradient += velocity[i] * grad_phi.transpose();
-                            });
-                            let increment = gradient * dt;
-                            if P::COUPLED {
-                                phase.update(&increment, particle.phase);
-                            }
-                            particle
-                                .advance(law, dt, &(v * dt), &increment)
-                                .map_err(|flaw| Fault::Material(first + k, flaw))?;
-                            let crossed =
-                                settle(grid, cell, particle.position).ok_or(Fault::Left(first + k))?;
-                            crossings += usize::from(crossed);
-                            strayed |= crossed && !window::is_safe(grid, cell);
-                            Ok(())
-                        });
-                let fault = moved.err();
-                found.set(Moved {
-                    crossings,
-                    strayed,
-                    fault,
-                });
+                let motion = Motion {
+                    velocity,
+                    dt,
+                    law,
+                    phase,
+                };
+                let outcome = if const { lanes::apply::<T, D, B>() } {
+                    Pass::new(basis, grid).advance(&motion, first, particles, cells)
+                } else {
+                    advance_one_by_one(basis, grid, &motion, first, particles, cells)
+                };
+                bounds.set(outcome.bounds);
+                found.set(outcome.moved);
             },
         );
         self.account_for_moves()
@@ -105,6 +76,48 @@ where
             Some(Fault::Left(p)) => Err(self.left(p)),
         }
     }
+}
+
+/// Moves and deforms the particles of a span for any basis.
+#[inline(always)]
+fn advance_one_by_one<T, const D: usize, B, L, P>(
+    basis: &B,
+    grid: &Grid<T, D>,
+    motion: &Motion<'_, T, D, L, P>,
+    first: usize,
+    particles: Movables<'_, T, D, L::State, P::Particle>,
+    cells: &mut [Cell<D>],
+) -> Outcome<T>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    let (velocity, dt) = (motion.velocity, motion.dt);
+    advance_by_blocks(
+        motion,
+        first,
+        particles,
+        cells,
+        #[inline(always)]
+        |p, block, particles, cells, outcome| {
+            let (positions, displacements) = particles.places();
+            let (x, cell) = (&mut positions[p], &mut cells[p]);
+            let mut v = SVector::zeros();
+            let mut gradient = SMatrix::<T, D, D>::zeros();
+            basis.for_each(grid, cell, x, |i, phi, grad_phi| {
+                v += velocity[i] * phi;
+                gradient += velocity[i] * grad_phi.transpose();
+            });
+            let path = v * dt;
+            *x += path;
+            displacements[p] += path;
+            block.push_one(gradient * dt);
+            outcome.bound(grid.linear(cell));
+            outcome.settle(grid, p, cell, x);
+        },
+    )
 }
 
 impl<T: Scalar, const D: usize, S: Copy, Q> Movable<'_, T, D, S, Q> {
@@ -135,3 +148,6 @@ impl<T: Scalar, const D: usize, S: Copy, Q> Movable<'_, T, D, S, Q> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

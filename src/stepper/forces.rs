@@ -83,18 +83,19 @@ where
                     cells,
                     masses: bodies.0,
                 };
-                let stress = |p: usize| {
+                let felt = |p: usize, stress: &SMatrix<T, D, D>| {
                     if P::COUPLED {
-                        phase.total_stress(&stresses.0[p], &stresses.1[p])
+                        phase.total_stress(stress, &stresses.1[p])
                     } else {
-                        stresses.0[p]
+                        *stress
                     }
                 };
+                let material = (bodies.1, stresses.0);
                 let mut sink = |i: usize, m, f| {
                     mass[i - first] += m;
                     force[i - first] -= f;
                 };
-                return Pass::new(basis, grid).sum_masses_and_forces(bodies_at, bodies.1, &stress, &mut sink);
+                return Pass::new(basis, grid).sum_masses_and_forces(bodies_at, material, &felt, &mut sink);
             }
             let mut sums = CellSums::new(basis, grid);
             let mut sink = |i: usize, Pair(m, f)| {

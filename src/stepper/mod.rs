@@ -22,6 +22,7 @@ mod cell_sums;
 mod checkpoint;
 mod contact;
 mod critical;
+mod deform;
 mod diagnostics;
 mod dofs;
 mod forces;

@@ -7,34 +7,20 @@ use crate::basis::BasisFamily;
 use crate::grid::Cell;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::law::ConstitutiveLaw;
-use crate::particles::{Movables, settle};
+use crate::particles::Movables;
 use crate::phase::Phase;
 use crate::scalar::Scalar;
-use crate::stepper::spans::{Fault, Moved};
-use crate::stepper::window;
-
-/// What moves particles.
-pub(in super::super) struct Motion<'a, T, const D: usize, L, P> {
-    /// Velocities of the DOFs.
-    pub(in super::super) velocity: &'a [SVector<T, D>],
-    pub(in super::super) dt: T,
-    pub(in super::super) law: &'a L,
-    pub(in super::super) phase: &'a P,
-}
-
-/// Of the particles of a group, the path and the displacement gradient of the step.
-type Increments<T, const D: usize> = [(SVector<T, D>, SMatrix<T, D, D>); LANES];
+use crate::stepper::deform::{Motion, Outcome, advance_by_blocks};
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
-    /// Moves and deforms the particles, the first of which has the number `first`; returns also the lowest and the highest
-    /// number of a cell that they are then in.
+    /// Moves and deforms the particles, the first of which has the number `first`.
     pub(in super::super) fn advance<L: ConstitutiveLaw<T, D>, P: Phase<T, D>>(
         &self,
         motion: &Motion<'_, T, D, L, P>,
         first: usize,
         particles: Movables<'_, T, D, L::State, P::Particle>,
         cells: &mut [Cell<D>],
-    ) -> (Moved<T>, [u32; 2]) {
+    ) -> Outcome<T> {
         with_lanes_of!(T, self.advance_in[_, _](motion, first, particles, cells))
     }
 
@@ -43,72 +29,80 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         &self,
         motion: &Motion<'_, T, D, L, P>,
         first: usize,
-        mut particles: Movables<'_, T, D, L::State, P::Particle>,
+        particles: Movables<'_, T, D, L::State, P::Particle>,
         cells: &mut [Cell<D>],
-    ) -> (Moved<T>, [u32; 2]) {
-        let mut moved = Moved::default();
-        let mut bounds = [u32::MAX, 0];
-        let mut bound = |cell: &Cell<D>| {
-            let number = self.grid.linear(cell) as u32;
-            bounds = [bounds[0].min(number), bounds[1].max(number)];
-        };
-        let mut p = 0;
-        while p < cells.len() && moved.fault.is_none() {
-            let group = Group::at(p, cells);
-            let x = group.vectors::<T, V, D>(particles.positions());
-            bound(&cells[p]);
-            let increments = self.increments(motion, &cells[p], &x);
-            for l in 0..group.count {
-                let (path, increment) = &increments[l];
-                let mut particle = particles.at(p + l);
-                if P::COUPLED {
-                    motion.phase.update(increment, particle.phase);
-                }
-                if let Err(flaw) = particle.advance(motion.law, motion.dt, path, increment) {
-                    moved.fault = Some(Fault::Material(first + p + l, flaw));
-                    break;
-                }
-                match settle(self.grid, &mut cells[p + l], particle.position) {
-                    Some(false) => {}
-                    Some(true) => {
-                        moved.crossings += 1;
-                        if window::is_safe(self.grid, &cells[p + l]) {
-                            bound(&cells[p + l]);
-                        } else {
-                            moved.strayed = true;
-                        }
-                    }
-                    None => {
-                        moved.fault = Some(Fault::Left(first + p + l));
-                        break;
-                    }
-                }
-            }
-            p += group.count;
-        }
-        (moved, bounds)
+    ) -> Outcome<T> {
+        advance_by_blocks(
+            motion,
+            first,
+            particles,
+            cells,
+            #[inline(always)]
+            |p, block, particles, cells, outcome| {
+                let group = Group::at(p, cells);
+                let places = particles.places();
+                let increments = self.shift::<V>(motion.velocity, motion.dt, group, places, cells, outcome);
+                block.push(increments, group.count);
+            },
+        )
     }
 
+    /// Moves the particles of a group, given their positions and displacements; returns their displacement gradients of the step.
     #[inline(always)]
-    fn increments<V: Lanes<T>, L, P>(
+    fn shift<V: Lanes<T>>(
         &self,
-        motion: &Motion<'_, T, D, L, P>,
+        velocity: &[SVector<T, D>],
+        dt: T,
+        group: Group,
+        (positions, displacements): (&mut [SVector<T, D>], &mut [SVector<T, D>]),
+        cells: &mut [Cell<D>],
+        outcome: &mut Outcome<T>,
+    ) -> [SMatrix<T, D, D>; LANES] {
+        let cell = &cells[group.first];
+        outcome.bound(self.grid.linear(cell));
+        let x = group.vectors::<T, V, D>(positions);
+        let (path, gradient) = self.increments(velocity, dt, cell, &x);
+        let moved: [V; D] = std::array::from_fn(|c| x[c] + path[c]);
+        group.put(positions, &moved);
+        let displacement = group.vectors::<T, V, D>(displacements);
+        group.put(displacements, &std::array::from_fn(|c| displacement[c] + path[c]));
+        if !self.grid.clearly_holds_all(cell, &moved) {
+            self.settle(group, positions, cells, outcome);
+        }
+        std::array::from_fn(|l| SMatrix::from_fn(|c, a| gradient[c][a][l]))
+    }
+
+    /// Of the particles of a group, their paths and the components of their displacement gradients.
+    #[inline(always)]
+    fn increments<V: Lanes<T>>(
+        &self,
+        velocity: &[SVector<T, D>],
+        dt: T,
         cell: &Cell<D>,
         x: &[V; D],
-    ) -> Increments<T, D> {
+    ) -> ([V; D], [[[T; LANES]; D]; D]) {
         let factors = self.factors(cell, x);
-        let (v, slopes) = self.value_and_slopes(self.first_dof(cell), &factors, motion.velocity);
-        let dt = V::splat(motion.dt);
+        let (v, slopes) = self.value_and_slopes(self.first_dof(cell), &factors, velocity);
         let inverse = self.grid.inverse_cell_size();
-        let steps: [V; D] = std::array::from_fn(|a| V::splat(motion.dt * inverse[a]));
-        let path: [_; D] = std::array::from_fn(|c| (v[c] * dt).array());
-        let gradient: [[_; D]; D] =
-            std::array::from_fn(|c| std::array::from_fn(|a| (slopes[c][a] * steps[a]).array()));
-        std::array::from_fn(|l| {
-            (
-                SVector::from_fn(|c, _| path[c][l]),
-                SMatrix::from_fn(|c, a| gradient[c][a][l]),
-            )
-        })
+        let steps: [V; D] = std::array::from_fn(|a| V::splat(dt * inverse[a]));
+        (
+            std::array::from_fn(|c| v[c] * V::splat(dt)),
+            std::array::from_fn(|c| std::array::from_fn(|a| (slopes[c][a] * steps[a]).array())),
+        )
+    }
+
+    /// Looks up the cells of a group of which not all clearly stayed.
+    #[inline(never)]
+    fn settle(
+        &self,
+        group: Group,
+        positions: &mut [SVector<T, D>],
+        cells: &mut [Cell<D>],
+        outcome: &mut Outcome<T>,
+    ) {
+        let bodies = positions.iter_mut().zip(cells).enumerate();
+        for (p, (x, cell)) in bodies.skip(group.first).take(group.count) {
+            outcome.settle(self.grid, p, cell, x);
+        }
     }
 }

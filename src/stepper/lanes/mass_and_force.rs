@@ -104,24 +104,24 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         sums.flush(self, false, &mut sink);
     }
 
-    /// Hands `sink(dof, mass, integral of stress times gradient)` what the particles add to the DOFs; `stress` says what the
-    /// momentum balance feels of a particle.
+    /// Hands `sink(dof, mass, integral of stress times gradient)` what the particles add to the DOFs, given volumes and stresses; `felt(p, stress)` says what the
+    /// momentum balance feels of the stress of particle `p`.
     pub(in super::super) fn sum_masses_and_forces(
         &self,
         bodies: Bodies<'_, T, D>,
-        volumes: &[T],
-        stress: &impl Fn(usize) -> SMatrix<T, D, D>,
+        material: (&[T], &[SMatrix<T, D, D>]),
+        felt: &impl Fn(usize, &SMatrix<T, D, D>) -> SMatrix<T, D, D>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) {
-        with_lanes_of!(T, self.masses_and_forces_in(bodies, volumes, stress, sink));
+        with_lanes_of!(T, self.masses_and_forces_in(bodies, material, felt, sink));
     }
 
     #[inline(never)]
     fn masses_and_forces_in<V: Lanes<T>>(
         &self,
         bodies: Bodies<'_, T, D>,
-        volumes: &[T],
-        stress: &impl Fn(usize) -> SMatrix<T, D, D>,
+        (volumes, stresses): (&[T], &[SMatrix<T, D, D>]),
+        felt: &impl Fn(usize, &SMatrix<T, D, D>) -> SMatrix<T, D, D>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) {
         let inverse = self.grid.inverse_cell_size();
@@ -133,8 +133,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
             let factors = self.factors(cell, &group.vectors::<T, V, D>(bodies.positions));
             let volume = group.amounts::<T, V>(volumes);
             let along: [V; D] = std::array::from_fn(|a| volume * V::splat(inverse[a]));
-            let stresses: [_; LANES] = std::array::from_fn(|l| stress(group.first + l.min(group.count - 1)));
-            let tensor = tensors::<T, V, D>(&stresses);
+            let tensor = group.with(stresses, |lanes| {
+                let particle = |l: usize| group.first + l.min(group.count - 1);
+                let felt: [_; LANES] = std::array::from_fn(|l| felt(particle(l), &lanes[l]));
+                tensors::<T, V, D>(&felt)
+            });
             let weighted = std::array::from_fn(|c| std::array::from_fn(|a| tensor[c][a] * along[a]));
             let parts = Parts {
                 scalar: Some(group.amounts(bodies.masses)),

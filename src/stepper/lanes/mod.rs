@@ -17,7 +17,6 @@ mod rows;
 mod sums;
 mod velocity;
 
-pub(super) use advance::Motion;
 pub(super) use fits::{Fits, MOST_POINTS};
 pub(super) use mass_and_force::Bodies;
 pub(super) use velocity::Acceleration;

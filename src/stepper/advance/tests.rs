@@ -1,0 +1,235 @@
+//! Four particles at once, and blocks of them, against one after the other.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::super::deform::Motion;
+use super::super::lanes::Pass;
+use super::super::spans::{Fault, Flaw, Moved};
+use super::advance_one_by_one;
+use crate::basis::{BSpline, BasisFamily, Linear};
+use crate::grid::{Cell, Grid};
+use crate::law::{ConstitutiveLaw, Hill, LinearElastic, Moduli, NeoHookean};
+use crate::parallel::Sliced;
+use crate::particles::{Bins, Particles, settle};
+use crate::phase::OnePhase;
+
+/// Numbers from 0 to 1 without any order.
+fn numbers() -> impl FnMut() -> f64 {
+    let mut state = 1_u64;
+    move || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// What is moved.
+#[derive(Clone)]
+struct Body<const D: usize, S> {
+    grid: Grid<f64, D>,
+    particles: Particles<f64, D, S>,
+    cells: Vec<Cell<D>>,
+    velocity: Vec<SVector<f64, D>>,
+}
+
+impl<const D: usize, S: Copy + Default + PartialEq + std::fmt::Debug> Body<D, S> {
+    /// Cells of one to nine particles in no order, more than a block of them, and DOFs with velocities up to 1 m/s.
+    fn new(basis: &impl BasisFamily<f64, D>) -> Self {
+        let n = [40, 6, 3][D - 1];
+        let grid = Grid::new(SVector::zeros(), SVector::repeat(n as f64), [n; D]).unwrap();
+        let mut number = numbers();
+        let mut points = Vec::new();
+        for cell in 0..grid.cell_count() {
+            for _ in 0..1 + (9.0 * number()) as usize {
+                let corner = grid.cell(cell).map(f64::from);
+                points.push((SVector::from_fn(|a, _| corner[a] + number()), 0.2 + number()));
+            }
+        }
+        points.rotate_left(3);
+        let mut particles = Particles::at_rest(&points, 1.0);
+        for stress in &mut particles.stress {
+            *stress = SMatrix::from_fn(|i, j| if i == j { number() } else { 0.0 });
+        }
+        let inner = |x: &SVector<f64, D>| x.iter().all(|&x| x > 0.0 && x < n as f64);
+        let points = (0..basis.dof_count(&grid)).map(|dof| basis.interpolation_point(&grid, dof));
+        let velocity = points
+            .map(|x| SVector::from_fn(|_, _| if inner(&x) { 2.0 * number() - 1.0 } else { 0.0 }))
+            .collect();
+        let cells = Bins::new(&grid, &particles.position).unwrap().cells().to_vec();
+        Self {
+            grid,
+            particles,
+            cells,
+            velocity,
+        }
+    }
+
+    /// Each particle by itself, as the law is written.
+    fn move_plainly<L: ConstitutiveLaw<f64, D, State = S>>(
+        &mut self,
+        basis: &impl BasisFamily<f64, D>,
+        law: &L,
+        dt: f64,
+    ) -> Moved<f64> {
+        let mut moved = Moved::default();
+        let particles = self.particles.movable().each();
+        for (p, (mut particle, cell)) in particles.zip(&mut self.cells).enumerate() {
+            let (mut v, mut gradient) = (SVector::zeros(), SMatrix::zeros());
+            basis.for_each(&self.grid, cell, particle.position, |i, phi, slope| {
+                v += self.velocity[i] * phi;
+                gradient += self.velocity[i] * slope.transpose();
+            });
+            if let Err(flaw) = particle.advance(law, dt, &(v * dt), &(gradient * dt)) {
+                moved.fault = Some(Fault::Material(p, flaw));
+                return moved;
+            }
+            match settle(&self.grid, cell, particle.position) {
+                Some(crossed) => moved.crossings += usize::from(crossed),
+                None => {
+                    moved.fault = Some(Fault::Left(p));
+                    return moved;
+                }
+            }
+        }
+        moved
+    }
+
+    /// As a step does: four at once, or one by one.
+    fn move_in_blocks<L: ConstitutiveLaw<f64, D, State = S>>(
+        &mut self,
+        four: bool,
+        basis: &impl BasisFamily<f64, D>,
+        law: &L,
+        dt: f64,
+    ) -> (Moved<f64>, [u32; 2]) {
+        let motion = Motion {
+            velocity: &self.velocity,
+            dt,
+            law,
+            phase: &OnePhase,
+        };
+        let (particles, cells) = (self.particles.movable(), &mut self.cells[..]);
+        let outcome = if four {
+            Pass::new(basis, &self.grid).advance(&motion, 0, particles, cells)
+        } else {
+            advance_one_by_one(basis, &self.grid, &motion, 0, particles, cells)
+        };
+        (outcome.moved, outcome.bounds)
+    }
+
+    fn assert_near(&self, other: &Self) {
+        let (a, b) = (&self.particles, &other.particles);
+        assert_eq!(self.cells, other.cells);
+        for p in 0..a.len() {
+            let near = |a: &[f64], b: &[f64]| {
+                a.iter()
+                    .zip(b)
+                    .all(|(a, b)| (a - b).abs() <= 1e-13 * (1.0 + a.abs()))
+            };
+            assert!(
+                near(a.position[p].as_slice(), b.position[p].as_slice()),
+                "position {p}"
+            );
+            assert!(near(a.displacement[p].as_slice(), b.displacement[p].as_slice()));
+            assert!(near(a.stress[p].as_slice(), b.stress[p].as_slice()), "stress {p}");
+            assert!(near(&a.volume[p..=p], &b.volume[p..=p]), "volume {p}");
+        }
+    }
+}
+
+fn compare<const D: usize, L>(basis: &impl BasisFamily<f64, D>, law: &L)
+where
+    L: ConstitutiveLaw<f64, D, State: PartialEq + std::fmt::Debug>,
+{
+    let before = Body::<D, L::State>::new(basis);
+    let (mut plain, mut four, mut one) = (before.clone(), before.clone(), before);
+    for _ in 0..3 {
+        let count = plain.move_plainly(basis, law, 0.15).crossings;
+        assert!(count > 0, "particles cross: {count}");
+        for (body, at_once) in [(&mut four, true), (&mut one, false)] {
+            let (moved, [low, high]) = body.move_in_blocks(at_once, basis, law, 0.15);
+            assert_eq!(moved.crossings, count);
+            assert!(moved.fault.is_none());
+            let all = body.grid.cell_count() - 1;
+            assert_eq!((low, high as usize), (0, all));
+            body.assert_near(&plain);
+        }
+    }
+}
+
+#[test]
+fn blocks_move_and_deform_as_each_particle_alone() {
+    let moduli = Moduli::from_young(100.0, 0.3).unwrap();
+    let (hill, elastic) = (Hill { moduli }, LinearElastic { moduli });
+    compare::<1, _>(&Linear, &hill);
+    compare::<1, _>(&BSpline::<2>, &elastic);
+    compare::<1, _>(&BSpline::<3>, &NeoHookean { moduli });
+    compare::<2, _>(&BSpline::<2>, &hill);
+    compare::<2, _>(&Linear, &NeoHookean { moduli });
+    compare::<3, _>(&BSpline::<2>, &elastic);
+}
+
+/// Faults of single particles, also of two in one group and one block.
+#[test]
+fn the_first_particle_at_fault_is_told() {
+    let law = Hill {
+        moduli: Moduli::uniaxial(100.0).unwrap(),
+    };
+    let before = Body::<1, ()>::new(&Linear);
+    let last = before.particles.len() - 4;
+    for places in [vec![0], vec![last], vec![2, 9], vec![150, 151], vec![77, 6, 130]] {
+        for first_kind in 0..3 {
+            let mut body = before.clone();
+            for (k, &p) in places.iter().enumerate() {
+                match (first_kind + k) % 3 {
+                    0 => body.particles.stress[p][0] = 1e3,
+                    1 => body.particles.volume[p] = f64::NAN,
+                    _ => body.particles.position[p][0] = -1e3,
+                }
+            }
+            let mut plain = body.clone();
+            let expected = plain.move_plainly(&Linear, &law, 1e-3).fault;
+            assert!(expected.is_some());
+            for four in [true, false] {
+                let found = body.clone().move_in_blocks(four, &Linear, &law, 1e-3).0.fault;
+                match (found, expected) {
+                    (Some(Fault::Left(a)), Some(Fault::Left(b))) => assert_eq!(a, b),
+                    (Some(Fault::Material(a, found)), Some(Fault::Material(b, expected))) => {
+                        assert_eq!(a, b);
+                        let stress = |flaw| matches!(flaw, Flaw::Stress(_));
+                        assert_eq!(stress(found), stress(expected));
+                    }
+                    _ => panic!("{places:?}: {found:?} in place of {expected:?}"),
+                }
+            }
+        }
+    }
+}
+
+/// A block is no part of the result: particles move the same from wherever one begins.
+#[test]
+fn cuts_change_no_bit() {
+    let law = Hill {
+        moduli: Moduli::uniaxial(100.0).unwrap(),
+    };
+    let mut whole = Body::<1, ()>::new(&BSpline::<2>);
+    let mut cut = whole.clone();
+    whole.move_in_blocks(true, &BSpline::<2>, &law, 0.03);
+    let middle = 61;
+    let motion = Motion {
+        velocity: &cut.velocity,
+        dt: 0.03,
+        law: &law,
+        phase: &OnePhase,
+    };
+    let (a, b) = cut.particles.movable().split(1, middle);
+    let (cells_a, cells_b) = cut.cells.split_at_mut(middle);
+    let pass = Pass::new(&BSpline::<2>, &cut.grid);
+    pass.advance(&motion, 0, a, cells_a);
+    pass.advance(&motion, middle, b, cells_b);
+    assert_eq!(whole.particles.position, cut.particles.position);
+    assert_eq!(whole.particles.stress, cut.particles.stress);
+    assert_eq!(whole.particles.volume, cut.particles.volume);
+    assert_eq!(whole.particles.position.len(), whole.cells.len());
+}

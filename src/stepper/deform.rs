@@ -1,0 +1,238 @@
+//! Stage 4: particles that move and deform, a block of them at a time.
+//!
+//! How the particles of a block deform is noted when they move, and their law is asked in a loop of its own. Where a law is a few
+//! operations, whoever wrote it, a compiler makes vectors of such a loop; among all that moves a particle it does not.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::spans::{Fault, Flaw, Moved};
+use super::window;
+use crate::grid::{Cell, Grid};
+use crate::lanes::LANES;
+use crate::law::ConstitutiveLaw;
+use crate::particles::{Material, Movables, settle};
+use crate::phase::Phase;
+use crate::scalar::Scalar;
+use crate::tensor::determinant;
+
+/// Particles in a block, at most: enough for loops to be worth their start, and few enough for the nearest cache.
+const BLOCK: usize = 128;
+
+/// What moves particles.
+pub(super) struct Motion<'a, T, const D: usize, L, P> {
+    /// Velocities of the DOFs.
+    pub(super) velocity: &'a [SVector<T, D>],
+    pub(super) dt: T,
+    pub(super) law: &'a L,
+    pub(super) phase: &'a P,
+}
+
+/// Displacement gradients of the step of particles that follow each other.
+pub(super) struct Block<T, const D: usize> {
+    count: usize,
+    increments: [SMatrix<T, D, D>; BLOCK],
+}
+
+impl<T: Scalar, const D: usize> Block<T, D> {
+    /// Whether four more fit in.
+    #[inline(always)]
+    fn has_room(&self) -> bool {
+        self.count + LANES <= BLOCK
+    }
+
+    /// Notes the first `count` of four.
+    #[inline(always)]
+    pub(super) fn push(&mut self, four: [SMatrix<T, D, D>; LANES], count: usize) {
+        if let Some(next) = self.increments[self.count..].first_chunk_mut() {
+            *next = four;
+            self.count += count;
+        }
+    }
+
+    /// Notes one.
+    #[inline(always)]
+    pub(super) fn push_one(&mut self, increment: SMatrix<T, D, D>) {
+        if let Some(next) = self.increments.get_mut(self.count) {
+            *next = increment;
+            self.count += 1;
+        }
+    }
+}
+
+/// What becomes of the particles of a span.
+pub(super) struct Outcome<T> {
+    pub(super) moved: Moved<T>,
+    /// Lowest and highest number of a cell that they are in.
+    pub(super) bounds: [u32; 2],
+    /// Index in the span of the first particle that left the grid.
+    left: Option<usize>,
+}
+
+impl<T: Scalar> Outcome<T> {
+    /// Takes in that particles are in the cell with this number.
+    #[inline(always)]
+    pub(super) fn bound(&mut self, number: usize) {
+        let [low, high] = self.bounds;
+        self.bounds = [low.min(number as u32), high.max(number as u32)];
+    }
+
+    /// Looks up the cell of the particle with index `p`, which is at `x` now.
+    #[inline(always)]
+    pub(super) fn settle<const D: usize>(
+        &mut self,
+        grid: &Grid<T, D>,
+        p: usize,
+        cell: &mut Cell<D>,
+        x: &mut SVector<T, D>,
+    ) {
+        match settle(grid, cell, x) {
+            Some(false) => {}
+            Some(true) => {
+                self.moved.crossings += 1;
+                if window::is_safe(grid, cell) {
+                    self.bound(grid.linear(cell));
+                } else {
+                    self.moved.strayed = true;
+                }
+            }
+            None => self.left = self.left.or(Some(p)),
+        }
+    }
+}
+
+/// Moves and deforms the particles of a span, the first of which has the number `first`. `shift(p, block, particles, cells, outcome)`
+/// is to move those from index `p` on, at least one and at most four, note their increments, and look up their cells.
+#[inline(always)]
+pub(super) fn advance_by_blocks<T, const D: usize, L, P>(
+    motion: &Motion<'_, T, D, L, P>,
+    first: usize,
+    mut particles: Movables<'_, T, D, L::State, P::Particle>,
+    cells: &mut [Cell<D>],
+    mut shift: impl FnMut(
+        usize,
+        &mut Block<T, D>,
+        &mut Movables<'_, T, D, L::State, P::Particle>,
+        &mut [Cell<D>],
+        &mut Outcome<T>,
+    ),
+) -> Outcome<T>
+where
+    T: Scalar,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    let mut outcome = Outcome {
+        moved: Moved::default(),
+        bounds: [u32::MAX, 0],
+        left: None,
+    };
+    let mut block = Block {
+        count: 0,
+        increments: [SMatrix::zeros(); BLOCK],
+    };
+    let mut p = 0;
+    while p < cells.len() && outcome.moved.fault.is_none() {
+        block.count = 0;
+        while p + block.count < cells.len() && block.has_room() && outcome.left.is_none() {
+            shift(p + block.count, &mut block, &mut particles, cells, &mut outcome);
+        }
+        let increments = &block.increments[..block.count];
+        let flaw = deform(motion, increments, particles.material(p, block.count));
+        outcome.moved.fault = match (flaw, outcome.left) {
+            // Of particles at fault the first one is told.
+            (Some((k, flaw)), left) if left.is_none_or(|left| p + k <= left) => {
+                Some(Fault::Material(first + p + k, flaw))
+            }
+            (_, left) => left.map(|p| Fault::Left(first + p)),
+        };
+        p += block.count;
+    }
+    outcome
+}
+
+/// Deforms particles; returns the first one whose volume is no longer a positive number, or whose stress the law does not know.
+#[inline(always)]
+fn deform<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>, P: Phase<T, D>>(
+    motion: &Motion<'_, T, D, L, P>,
+    increments: &[SMatrix<T, D, D>],
+    material: Material<'_, T, D, L::State, P::Particle>,
+) -> Option<(usize, Flaw<T>)> {
+    let (law, phase) = (motion.law, motion.phase);
+    if P::COUPLED {
+        for (increment, data) in increments.iter().zip(&mut *material.phase) {
+            phase.update(increment, data);
+        }
+    }
+    carry(law, motion.dt, increments, material.stress, material.state);
+    let known = are_known(law, material.stress, material.state);
+    let sound = !law.large_strain() || stretch(increments, material.volume);
+    if known && sound {
+        return None;
+    }
+    first_flaw(law, &material)
+}
+
+// Functions of their own, because a compiler knows of what a function is given, and not of what a structure holds, that slices are
+// apart from each other and from the law: it need not read the law's constants anew after each stress.
+
+/// Carries stresses and states over the increments.
+#[inline(never)]
+fn carry<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
+    law: &L,
+    dt: T,
+    increments: &[SMatrix<T, D, D>],
+    stresses: &mut [SMatrix<T, D, D>],
+    states: &mut [L::State],
+) {
+    for ((increment, stress), state) in increments.iter().zip(stresses).zip(states) {
+        law.update_over(dt, increment, stress, state);
+    }
+}
+
+/// Whether the law has a meaning at all stresses.
+#[inline(never)]
+fn are_known<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
+    law: &L,
+    stresses: &[SMatrix<T, D, D>],
+    states: &[L::State],
+) -> bool {
+    let bodies = stresses.iter().zip(states);
+    bodies.fold(true, |known, (stress, state)| known & law.knows(stress, state))
+}
+
+/// Lets volumes follow the increments; whether all are still sound.
+#[inline(never)]
+fn stretch<T: Scalar, const D: usize>(increments: &[SMatrix<T, D, D>], volumes: &mut [T]) -> bool {
+    let bodies = increments.iter().zip(volumes);
+    bodies.fold(true, |sound, (increment, volume)| {
+        *volume *= determinant(&(SMatrix::identity() + increment));
+        sound & is_sound(*volume)
+    })
+}
+
+/// Whether a volume is a positive number, and finite.
+#[inline(always)]
+fn is_sound<T: Scalar>(volume: T) -> bool {
+    (volume > T::zero()) & (volume * T::zero()).is_zero()
+}
+
+/// What is wrong with the first particle with which something is.
+#[cold]
+#[inline(never)]
+fn first_flaw<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>, Q>(
+    law: &L,
+    material: &Material<'_, T, D, L::State, Q>,
+) -> Option<(usize, Flaw<T>)> {
+    let bodies = material
+        .stress
+        .iter()
+        .zip(&*material.state)
+        .zip(&*material.volume);
+    bodies.enumerate().find_map(|(k, ((stress, state), &volume))| {
+        if !law.knows(stress, state) {
+            return Some((k, Flaw::Stress(stress[(0, 0)])));
+        }
+        let unsound = law.large_strain() && !is_sound(volume);
+        unsound.then_some((k, Flaw::Volume(volume)))
+    })
+}
