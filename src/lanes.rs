@@ -1,7 +1,7 @@
 //! Four numbers computed side by side.
 //!
 //! A processor's vector unit adds or multiplies four `f64` in the time of one. Compilers rarely find that out for the sums of
-//! a particle method, so the passes over particles in two and three dimensions are written for [`Lanes`]: one lane for each
+//! a particle method, so the passes over particles are written for [`Lanes`]: one lane for each
 //! of four particles of a cell. For `f64` and `f32` the lanes are a vector register (crate `wide`); for every other scalar,
 //! dual numbers for instance, they are [`Four`], four scalars after one another: the same code, and the same result but for
 //! the rounding that [`Lanes::mul_add`] spares.

@@ -8,7 +8,7 @@ use nalgebra::{SMatrix, SVector};
 use super::spans::{Fault, Flaw, Moved};
 use super::window;
 use crate::grid::{Cell, Grid};
-use crate::lanes::LANES;
+use crate::lanes::{LANES, Lanes};
 use crate::law::ConstitutiveLaw;
 use crate::particles::{Material, Movables, settle};
 use crate::phase::Phase;
@@ -36,15 +36,18 @@ pub(super) struct Block<T, const D: usize> {
 impl<T: Scalar, const D: usize> Block<T, D> {
     /// Whether four more fit in.
     #[inline(always)]
-    fn has_room(&self) -> bool {
+    pub(super) fn has_room(&self) -> bool {
         self.count + LANES <= BLOCK
     }
 
-    /// Notes the first `count` of four.
+    /// Notes the first `count` of four, component `(c, a)` at `[c][a]`.
     #[inline(always)]
-    pub(super) fn push(&mut self, four: [SMatrix<T, D, D>; LANES], count: usize) {
-        if let Some(next) = self.increments[self.count..].first_chunk_mut() {
-            *next = four;
+    pub(super) fn push<V: Lanes<T>>(&mut self, four: &[[V; D]; D], count: usize) {
+        if let Some(next) = self.increments[self.count..].first_chunk_mut::<LANES>() {
+            let components = four.map(|row| row.map(V::array));
+            for l in 0..LANES {
+                next[l] = SMatrix::from_fn(|c, a| components[c][a][l]);
+            }
             self.count += count;
         }
     }
@@ -72,8 +75,13 @@ impl<T: Scalar> Outcome<T> {
     /// Takes in that particles are in the cell with this number.
     #[inline(always)]
     pub(super) fn bound(&mut self, number: usize) {
-        let [low, high] = self.bounds;
-        self.bounds = [low.min(number as u32), high.max(number as u32)];
+        self.bounds = with_number(self.bounds, number);
+    }
+
+    /// Takes in the bounds of others.
+    #[inline(always)]
+    pub(super) fn bound_by(&mut self, [low, high]: [u32; 2]) {
+        self.bounds = [self.bounds[0].min(low), self.bounds[1].max(high)];
     }
 
     /// Looks up the cell of the particle with index `p`, which is at `x` now.
@@ -100,8 +108,18 @@ impl<T: Scalar> Outcome<T> {
     }
 }
 
+/// Bounds of no numbers.
+pub(super) const NO_BOUNDS: [u32; 2] = [u32::MAX, 0];
+
+/// Lowest and highest number, with one more.
+#[inline(always)]
+pub(super) fn with_number([low, high]: [u32; 2], number: usize) -> [u32; 2] {
+    [low.min(number as u32), high.max(number as u32)]
+}
+
 /// Moves and deforms the particles of a span, the first of which has the number `first`. `shift(p, block, particles, cells, outcome)`
-/// is to move those from index `p` on, at least one and at most four, note their increments, and look up their cells.
+/// is to move those from index `p` on, one at least and as many as it likes while the block has room, note their increments, and look up
+/// their cells.
 #[inline(always)]
 pub(super) fn advance_by_blocks<T, const D: usize, L, P>(
     motion: &Motion<'_, T, D, L, P>,
@@ -123,7 +141,7 @@ where
 {
     let mut outcome = Outcome {
         moved: Moved::default(),
-        bounds: [u32::MAX, 0],
+        bounds: NO_BOUNDS,
         left: None,
     };
     let mut block = Block {

@@ -1,6 +1,6 @@
 //! Stage 4: positions, stresses and volumes of the particles.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use super::{Group, Pass};
 use crate::basis::BasisFamily;
@@ -10,7 +10,7 @@ use crate::law::ConstitutiveLaw;
 use crate::particles::Movables;
 use crate::phase::Phase;
 use crate::scalar::Scalar;
-use crate::stepper::deform::{Motion, Outcome, advance_by_blocks};
+use crate::stepper::deform::{Motion, NO_BOUNDS, Outcome, advance_by_blocks, with_number};
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     /// Moves and deforms the particles, the first of which has the number `first`.
@@ -38,18 +38,35 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
             particles,
             cells,
             #[inline(always)]
-            |p, block, particles, cells, outcome| {
+            |mut p, block, particles, cells, outcome| {
+                let (velocity, dt) = (motion.velocity, motion.dt);
+                if D == 1 {
+                    // Not those of the outcome, which other functions are given: these stay in registers.
+                    let mut bounds = NO_BOUNDS;
+                    while let (true, Some(group)) = (block.has_room(), Group::full_at(p, cells)) {
+                        bounds = with_number(bounds, self.grid.linear(&cells[p]));
+                        let places = particles.places();
+                        let increments = self.shift::<true, V>(velocity, dt, group, places, cells, outcome);
+                        block.push(&increments, LANES);
+                        p += LANES;
+                    }
+                    outcome.bound_by(bounds);
+                    if !block.has_room() || p >= cells.len() {
+                        return;
+                    }
+                }
                 let group = Group::at(p, cells);
-                let places = particles.places();
-                let increments = self.shift::<V>(motion.velocity, motion.dt, group, places, cells, outcome);
-                block.push(increments, group.count);
+                outcome.bound(self.grid.linear(&cells[p]));
+                let increments =
+                    self.shift::<false, V>(velocity, dt, group, particles.places(), cells, outcome);
+                block.push(&increments, group.count);
             },
         )
     }
 
     /// Moves the particles of a group, given their positions and displacements; returns their displacement gradients of the step.
     #[inline(always)]
-    fn shift<V: Lanes<T>>(
+    fn shift<const FULL: bool, V: Lanes<T>>(
         &self,
         velocity: &[SVector<T, D>],
         dt: T,
@@ -57,19 +74,19 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         (positions, displacements): (&mut [SVector<T, D>], &mut [SVector<T, D>]),
         cells: &mut [Cell<D>],
         outcome: &mut Outcome<T>,
-    ) -> [SMatrix<T, D, D>; LANES] {
+    ) -> [[V; D]; D] {
         let cell = &cells[group.first];
-        outcome.bound(self.grid.linear(cell));
-        let x = group.vectors::<T, V, D>(positions);
+        let x = group.vectors::<FULL, T, V, D>(positions);
         let (path, gradient) = self.increments(velocity, dt, cell, &x);
         let moved: [V; D] = std::array::from_fn(|c| x[c] + path[c]);
-        group.put(positions, &moved);
-        let displacement = group.vectors::<T, V, D>(displacements);
-        group.put(displacements, &std::array::from_fn(|c| displacement[c] + path[c]));
+        group.put::<FULL, T, V, D>(positions, &moved);
+        let displacement = group.vectors::<FULL, T, V, D>(displacements);
+        let displacement = std::array::from_fn(|c| displacement[c] + path[c]);
+        group.put::<FULL, T, V, D>(displacements, &displacement);
         if !self.grid.clearly_holds_all(cell, &moved) {
             self.settle(group, positions, cells, outcome);
         }
-        std::array::from_fn(|l| SMatrix::from_fn(|c, a| gradient[c][a][l]))
+        gradient
     }
 
     /// Of the particles of a group, their paths and the components of their displacement gradients.
@@ -80,14 +97,14 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         dt: T,
         cell: &Cell<D>,
         x: &[V; D],
-    ) -> ([V; D], [[[T; LANES]; D]; D]) {
+    ) -> ([V; D], [[V; D]; D]) {
         let factors = self.factors(cell, x);
         let (v, slopes) = self.value_and_slopes(self.first_dof(cell), &factors, velocity);
         let inverse = self.grid.inverse_cell_size();
         let steps: [V; D] = std::array::from_fn(|a| V::splat(dt * inverse[a]));
         (
             std::array::from_fn(|c| v[c] * V::splat(dt)),
-            std::array::from_fn(|c| std::array::from_fn(|a| (slopes[c][a] * steps[a]).array())),
+            std::array::from_fn(|c| std::array::from_fn(|a| slopes[c][a] * steps[a])),
         )
     }
 

@@ -4,18 +4,31 @@ use nalgebra::{SMatrix, SVector};
 
 use super::pairs::PairSums;
 use super::sums::{Parts, Sums};
-use super::{Group, Pass, tensors};
+use super::{EachGroup, Group, Pass, each_group, tensors};
 use crate::basis::BasisFamily;
 use crate::grid::Cell;
-use crate::lanes::{LANES, Lanes, with_lanes_of};
+use crate::lanes::{Lanes, with_lanes_of};
 use crate::scalar::Scalar;
 
-/// Particles of a span.
+/// Particles of a span; as many of everything as there are cells.
 #[derive(Clone, Copy)]
 pub(in super::super) struct Bodies<'a, T, const D: usize> {
     pub(in super::super) positions: &'a [SVector<T, D>],
     pub(in super::super) cells: &'a [Cell<D>],
     pub(in super::super) masses: &'a [T],
+}
+
+impl<T, const D: usize> Bodies<'_, T, D> {
+    /// The same with lengths that a compiler sees to be equal, so that one test of an index does for all arrays.
+    #[inline(always)]
+    pub(super) fn even(self) -> Self {
+        let count = self.cells.len();
+        Self {
+            positions: &self.positions[..count],
+            masses: &self.masses[..count],
+            ..self
+        }
+    }
 }
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
@@ -32,9 +45,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         while p < bodies.cells.len() {
             let group = Group::at(p, bodies.cells);
             let cell = &bodies.cells[p];
-            let factors = self.factors(cell, &group.vectors::<T, V, D>(bodies.positions));
+            let factors = self.factors(cell, &group.vectors::<false, T, V, D>(bodies.positions));
             let parts = Parts {
-                scalar: Some(group.amounts(bodies.masses)),
+                scalar: Some(group.amounts::<false, T, V>(bodies.masses)),
                 vector: None,
                 tensor: None,
             };
@@ -60,8 +73,14 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         while p < bodies.cells.len() {
             let group = Group::at(p, bodies.cells);
             let cell = &bodies.cells[p];
-            let factors = self.factors(cell, &group.vectors::<T, V, D>(bodies.positions));
-            sums.add(self, cell, &factors, group.amounts(bodies.masses), matrix);
+            let factors = self.factors(cell, &group.vectors::<false, T, V, D>(bodies.positions));
+            sums.add(
+                self,
+                cell,
+                &factors,
+                group.amounts::<false, T, V>(bodies.masses),
+                matrix,
+            );
             p += group.count;
         }
         sums.flush(self, matrix);
@@ -90,9 +109,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         while p < bodies.cells.len() {
             let group = Group::at(p, bodies.cells);
             let cell = &bodies.cells[p];
-            let factors = self.factors(cell, &group.vectors::<T, V, D>(bodies.positions));
-            let mass = group.amounts::<T, V>(bodies.masses);
-            let velocities = group.vectors::<T, V, D>(velocities);
+            let factors = self.factors(cell, &group.vectors::<false, T, V, D>(bodies.positions));
+            let mass = group.amounts::<false, T, V>(bodies.masses);
+            let velocities = group.vectors::<false, T, V, D>(velocities);
             let parts = Parts {
                 scalar: None,
                 vector: Some(std::array::from_fn(|c| velocities[c] * mass)),
@@ -124,29 +143,59 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         felt: &impl Fn(usize, &SMatrix<T, D, D>) -> SMatrix<T, D, D>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) {
-        let inverse = self.grid.inverse_cell_size();
-        let mut sums = Sums::<V, D>::new();
-        let mut p = 0;
-        while p < bodies.cells.len() {
-            let group = Group::at(p, bodies.cells);
-            let cell = &bodies.cells[p];
-            let factors = self.factors(cell, &group.vectors::<T, V, D>(bodies.positions));
-            let volume = group.amounts::<T, V>(volumes);
-            let along: [V; D] = std::array::from_fn(|a| volume * V::splat(inverse[a]));
-            let tensor = group.with(stresses, |lanes| {
-                let particle = |l: usize| group.first + l.min(group.count - 1);
-                let felt: [_; LANES] = std::array::from_fn(|l| felt(particle(l), &lanes[l]));
-                tensors::<T, V, D>(&felt)
-            });
-            let weighted = std::array::from_fn(|c| std::array::from_fn(|a| tensor[c][a] * along[a]));
-            let parts = Parts {
-                scalar: Some(group.amounts(bodies.masses)),
-                vector: None,
-                tensor: Some(weighted),
-            };
-            sums.add(self, cell, &factors, &parts, sink);
-            p += group.count;
-        }
-        sums.flush(self, true, sink);
+        let bodies = bodies.even();
+        let mut pass = MassesAndForces {
+            pass: self,
+            bodies,
+            volumes: &volumes[..bodies.cells.len()],
+            stresses: &stresses[..bodies.cells.len()],
+            felt,
+            sums: Sums::<V, D>::new(),
+            sink,
+        };
+        each_group(bodies.cells, &mut pass);
+        pass.sums.flush(self, true, pass.sink);
+    }
+}
+
+/// The pass over masses and stresses.
+struct MassesAndForces<'a, T, V, const D: usize, B, F, S> {
+    pass: &'a Pass<'a, T, D, B>,
+    bodies: Bodies<'a, T, D>,
+    volumes: &'a [T],
+    stresses: &'a [SMatrix<T, D, D>],
+    felt: &'a F,
+    sums: Sums<V, D>,
+    sink: &'a mut S,
+}
+
+impl<T, V, const D: usize, B, F, S> EachGroup for MassesAndForces<'_, T, V, D, B, F, S>
+where
+    T: Scalar,
+    V: Lanes<T>,
+    B: BasisFamily<T, D>,
+    F: Fn(usize, &SMatrix<T, D, D>) -> SMatrix<T, D, D>,
+    S: FnMut(usize, T, SVector<T, D>),
+{
+    #[inline(always)]
+    fn take<const FULL: bool>(&mut self, group: Group) {
+        let (pass, bodies) = (self.pass, &self.bodies);
+        let inverse = pass.grid.inverse_cell_size();
+        let cell = &bodies.cells[group.first];
+        let factors = pass.factors(cell, &group.vectors::<FULL, T, V, D>(bodies.positions));
+        let volume = group.amounts::<FULL, T, V>(self.volumes);
+        let along: [V; D] = std::array::from_fn(|a| volume * V::splat(inverse[a]));
+        let felt = self.felt;
+        let tensor = group.with::<FULL, _, _>(self.stresses, |lanes| {
+            let particle = |l: usize| group.first + l.min(group.count - 1);
+            tensors::<T, V, D>(&std::array::from_fn(|l| felt(particle(l), &lanes[l])))
+        });
+        let weighted = std::array::from_fn(|c| std::array::from_fn(|a| tensor[c][a] * along[a]));
+        let parts = Parts {
+            scalar: Some(group.amounts::<FULL, T, V>(bodies.masses)),
+            vector: None,
+            tensor: Some(weighted),
+        };
+        self.sums.add(pass, cell, &factors, &parts, self.sink);
     }
 }

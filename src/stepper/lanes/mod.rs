@@ -1,4 +1,4 @@
-//! The passes over particles in two and three dimensions, four particles of a cell at a time.
+//! The passes over particles, four particles of a cell at a time.
 //!
 //! Everything is computed in [`Lanes`], one for each of up to four particles that follow each other in a cell ([`Group`]).
 //! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs, and then over the
@@ -29,7 +29,7 @@ use crate::lanes::{LANES, Lanes};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 
-/// Whether the passes go this way. In one dimension there is little to share along the axes.
+/// Whether the passes go this way.
 pub(super) const fn apply<T: Scalar, const D: usize, B: BasisFamily<T, D>>() -> bool {
     B::WIDTH > 0
 }
@@ -71,12 +71,21 @@ impl Group {
         Self { first, count }
     }
 
-    /// `make` of what an array says of the particle of each lane. It is asked in both branches, and not once of what they find:
-    /// four numbers that follow each other are then one load.
+    /// [`LANES`] particles of one cell, the first of which is `first`, if there are so many.
     #[inline(always)]
-    fn with<A: Copy, R>(self, values: &[A], make: impl Fn([A; LANES]) -> R) -> R {
+    fn full_at<const D: usize>(first: usize, cells: &[Cell<D>]) -> Option<Self> {
+        let four = cells.get(first..)?.first_chunk()?;
+        are_alike(four).then_some(Self { first, count: LANES })
+    }
+
+    /// `make` of what an array says of the particle of each lane; the group must be full if `FULL`. It is asked in both branches,
+    /// and not once of what they find: four numbers that follow each other are then one load.
+    #[inline(always)]
+    fn with<const FULL: bool, A: Copy, R>(self, values: &[A], make: impl Fn([A; LANES]) -> R) -> R {
         match values[self.first..].first_chunk() {
-            Some(&lanes) if self.count == LANES => make(lanes),
+            Some(&lanes) if FULL || self.count == LANES => make(lanes),
+            // Never: a full group is within its arrays.
+            _ if FULL => make([values[self.first]; LANES]),
             _ => make(std::array::from_fn(|l| {
                 values[self.first + l.min(self.count - 1)]
             })),
@@ -85,32 +94,46 @@ impl Group {
 
     /// A number of each particle, zero in spare lanes.
     #[inline(always)]
-    fn amounts<T: Scalar, V: Lanes<T>>(self, values: &[T]) -> V {
-        match values[self.first..].first_chunk() {
-            Some(&lanes) if self.count == LANES => V::new(lanes),
-            _ => V::new(std::array::from_fn(|l| {
-                if l < self.count {
-                    values[self.first + l]
-                } else {
-                    T::zero()
-                }
-            })),
+    fn amounts<const FULL: bool, T: Scalar, V: Lanes<T>>(self, values: &[T]) -> V {
+        if FULL || self.count == LANES {
+            return self.with::<FULL, _, _>(values, V::new);
         }
+        V::new(std::array::from_fn(|l| {
+            if l < self.count {
+                values[self.first + l]
+            } else {
+                T::zero()
+            }
+        }))
     }
 
     /// The components of a vector.
     #[inline(always)]
-    fn vectors<T: Scalar, V: Lanes<T>, const D: usize>(self, values: &[SVector<T, D>]) -> [V; D] {
-        self.with(values, |lanes| {
+    fn vectors<const FULL: bool, T: Scalar, V: Lanes<T>, const D: usize>(
+        self,
+        values: &[SVector<T, D>],
+    ) -> [V; D] {
+        self.with::<FULL, _, _>(values, |lanes| {
             std::array::from_fn(|a| V::new(std::array::from_fn(|l| lanes[l][a])))
         })
     }
 
     /// Gives each particle its lane of a vector.
     #[inline(always)]
-    fn put<T: Scalar, V: Lanes<T>, const D: usize>(self, values: &mut [SVector<T, D>], vector: &[V; D]) {
+    fn put<const FULL: bool, T: Scalar, V: Lanes<T>, const D: usize>(
+        self,
+        values: &mut [SVector<T, D>],
+        vector: &[V; D],
+    ) {
         let lanes = vector.map(V::array);
         let of_lane = |l: usize| SVector::from_fn(|c, _| lanes[c][l]);
+        if FULL {
+            let four = &mut values[self.first..self.first + LANES];
+            for l in 0..LANES {
+                four[l] = of_lane(l);
+            }
+            return;
+        }
         match values[self.first..].first_chunk_mut() {
             Some(all) if self.count == LANES => *all = std::array::from_fn::<_, LANES, _>(of_lane),
             _ => {
@@ -122,11 +145,37 @@ impl Group {
     }
 }
 
-/// Whether all are the same cell. Without a branch for each: that takes longer than looking at all.
+/// What a pass does with each group.
+trait EachGroup {
+    /// Takes in the next one, which is full if `FULL`.
+    fn take<const FULL: bool>(&mut self, group: Group);
+}
+
+/// Calls [`EachGroup::take`] for the groups of the particles of the given cells. In one dimension, where a group takes as long as
+/// the question whether it is full, full ones have a loop of their own that asks once.
+#[inline(always)]
+fn each_group<const D: usize>(cells: &[Cell<D>], pass: &mut impl EachGroup) {
+    let mut p = 0;
+    while p < cells.len() {
+        if D == 1 {
+            while let Some(group) = Group::full_at(p, cells) {
+                pass.take::<true>(group);
+                p += LANES;
+            }
+            if p >= cells.len() {
+                return;
+            }
+        }
+        let group = Group::at(p, cells);
+        pass.take::<false>(group);
+        p += group.count;
+    }
+}
+
+/// Whether all are the same cell.
 #[inline(always)]
 fn are_alike<const D: usize>(cells: &[Cell<D>; LANES]) -> bool {
-    let differ = |l: usize| (0..D).fold(0, |bits, axis| bits | (cells[l][axis] ^ cells[0][axis]));
-    (1..LANES).fold(0, |bits, l| bits | differ(l)) == 0
+    cells.iter().all(|cell| *cell == cells[0])
 }
 
 /// Component `(c, a)` of the particles' tensors at `[c][a]`.

@@ -19,8 +19,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     /// The first DOF of `cell`.
     #[inline(always)]
     pub(super) fn first_dof(&self, cell: &Cell<D>) -> usize {
-        let number: usize = (0..D).map(|axis| cell[axis] as usize * self.strides[axis]).sum();
-        number - self.before
+        // Neighbours along axis 0 follow each other.
+        let others: usize = (1..D).map(|axis| cell[axis] as usize * self.strides[axis]).sum();
+        cell[0] as usize + others - self.before
     }
 
     /// Number of rows.

@@ -4,8 +4,9 @@ use nalgebra::SVector;
 
 use super::mass_and_force::Bodies;
 use super::sums::{Parts, Sums};
-use super::{Group, Pass};
-use crate::basis::BasisFamily;
+use super::{EachGroup, Group, Pass, each_group};
+use crate::basis::{BasisFamily, Factors};
+use crate::grid::Cell;
 use crate::lanes::{Lanes, with_lanes_of};
 use crate::scalar::Scalar;
 use crate::stepper::diagnostics;
@@ -77,35 +78,66 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         bodies: Bodies<'_, T, D>,
         velocities: &mut [SVector<T, D>],
         acceleration: Acceleration<'_, T, D>,
-        mut f: impl FnMut(&crate::grid::Cell<D>, &crate::basis::Factors<V, D>, &[V; D]),
+        f: impl FnMut(&Cell<D>, &Factors<V, D>, &[V; D]),
     ) -> diagnostics::Sums<T, D> {
+        let bodies = bodies.even();
         let zero = V::splat(T::zero());
-        let dt = V::splat(acceleration.dt);
-        let (mut momentum, mut scale) = ([zero; D], zero);
-        let mut p = 0;
-        while p < bodies.cells.len() {
-            let group = Group::at(p, bodies.cells);
-            let cell = &bodies.cells[p];
-            let factors = self.factors(cell, &group.vectors::<T, V, D>(bodies.positions));
-            let a = self.value(self.first_dof(cell), &factors, acceleration.dofs);
-            let before = group.vectors::<T, V, D>(velocities);
-            let after: [V; D] = std::array::from_fn(|c| a[c].mul_add(dt, before[c]));
-            group.put(velocities, &after);
-            let mass = group.amounts::<T, V>(bodies.masses);
-            let q: [V; D] = std::array::from_fn(|c| after[c] * mass);
-            for c in 0..D {
-                momentum[c] = momentum[c] + q[c];
-            }
-            scale = scale + size(&q);
-            f(cell, &factors, &q);
-            p += group.count;
-        }
+        let mut pass = Accelerating {
+            pass: self,
+            bodies,
+            velocities: &mut velocities[..bodies.cells.len()],
+            acceleration,
+            momentum: [zero; D],
+            scale: zero,
+            f,
+        };
+        each_group(bodies.cells, &mut pass);
+        let (momentum, scale) = (pass.momentum, pass.scale);
         let sums = V::sums(std::array::from_fn(|k| match k {
             3 => scale,
             _ if k < D => momentum[k],
             _ => zero,
         }));
         diagnostics::Sums::new(SVector::from_fn(|c, _| sums[c]), sums[3])
+    }
+}
+
+/// The pass over velocities.
+struct Accelerating<'a, T, V, const D: usize, B, F> {
+    pass: &'a Pass<'a, T, D, B>,
+    bodies: Bodies<'a, T, D>,
+    velocities: &'a mut [SVector<T, D>],
+    acceleration: Acceleration<'a, T, D>,
+    /// Of all, and its size, lane by lane.
+    momentum: [V; D],
+    scale: V,
+    f: F,
+}
+
+impl<T, V, const D: usize, B, F> EachGroup for Accelerating<'_, T, V, D, B, F>
+where
+    T: Scalar,
+    V: Lanes<T>,
+    B: BasisFamily<T, D>,
+    F: FnMut(&Cell<D>, &Factors<V, D>, &[V; D]),
+{
+    #[inline(always)]
+    fn take<const FULL: bool>(&mut self, group: Group) {
+        let (pass, bodies) = (self.pass, &self.bodies);
+        let cell = &bodies.cells[group.first];
+        let factors = pass.factors(cell, &group.vectors::<FULL, T, V, D>(bodies.positions));
+        let a = pass.value(pass.first_dof(cell), &factors, self.acceleration.dofs);
+        let before = group.vectors::<FULL, T, V, D>(self.velocities);
+        let dt = V::splat(self.acceleration.dt);
+        let after: [V; D] = std::array::from_fn(|c| a[c].mul_add(dt, before[c]));
+        group.put::<FULL, T, V, D>(self.velocities, &after);
+        let mass = group.amounts::<FULL, T, V>(bodies.masses);
+        let q: [V; D] = std::array::from_fn(|c| after[c] * mass);
+        for c in 0..D {
+            self.momentum[c] = self.momentum[c] + q[c];
+        }
+        self.scale = self.scale + size(&q);
+        (self.f)(cell, &factors, &q);
     }
 }
 
