@@ -175,7 +175,8 @@ fn each_group<const D: usize>(cells: &[Cell<D>], pass: &mut impl EachGroup) {
 /// Whether all are the same cell.
 #[inline(always)]
 fn are_alike<const D: usize>(cells: &[Cell<D>; LANES]) -> bool {
-    cells.iter().all(|cell| *cell == cells[0])
+    let differ = |l: usize| (0..D).fold(0, |bits, axis| bits | (cells[l][axis] ^ cells[0][axis]));
+    (1..LANES).fold(0, |bits, l| bits | differ(l)) == 0
 }
 
 /// Component `(c, a)` of the particles' tensors at `[c][a]`.

@@ -49,14 +49,21 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     ) -> diagnostics::Sums<T, D> {
         let mut sums = Sums::<V, D>::new();
         let mut sink = |i: usize, _, q| sink(i, q);
-        let total = self.each_accelerated(bodies, velocities, acceleration, |cell, factors, momentum| {
-            let parts = Parts {
-                scalar: None,
-                vector: Some(*momentum),
-                tensor: None,
-            };
-            sums.add(self, cell, factors, &parts, &mut sink);
-        });
+        let total = self.each_accelerated(
+            bodies,
+            velocities,
+            acceleration,
+            // A compiler may think it too long to be called in two places, and the sums then go through memory.
+            #[inline(always)]
+            |cell, factors, momentum| {
+                let parts = Parts {
+                    scalar: None,
+                    vector: Some(*momentum),
+                    tensor: None,
+                };
+                sums.add(self, cell, factors, &parts, &mut sink);
+            },
+        );
         sums.flush(self, false, &mut sink);
         total
     }
