@@ -134,7 +134,7 @@ fn main() {
             let variants = [None, Some(Drag::Implicit), Some(Drag::Explicit)];
             let [dry, implicit, explicit] = variants.map(|variant| {
                 let built = method.dispatch(Build(variant));
-                time(built.expect("one of the nine").as_mut())
+                time(built.expect("a known method").as_mut())
             });
             one.push(dry);
             two.push(implicit / dry);

@@ -98,9 +98,11 @@ fn methods(scene: &Scene, list: &str) -> Result<Vec<Method>, Failure> {
         .collect::<Result<_, _>>()?;
     let unknown = |method: &&Method| !method.reconstruction.is_known(dimension, phases);
     match methods.iter().find(unknown) {
-        Some(method) if dimension == 1 => Err(Failure::Input(format!(
-            "--methods: {method} knows one phase only so far; with material.phases = 2 write shepard, taylor or spline"
-        ))),
+        Some(method) if method.reconstruction == ReconstructionKind::RelaxedTaylor => {
+            Err(Failure::Input(format!(
+                "--methods: {method} knows one phase only beyond one axis so far; with material.phases = 2 write shepard or taylor"
+            )))
+        }
         Some(method) => Err(Failure::Input(format!(
             "--methods: {method} exists in one dimension only, and the scene has {dimension}; write shepard, taylor or relaxed-taylor"
         ))),

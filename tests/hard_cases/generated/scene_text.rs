@@ -40,7 +40,7 @@ pub fn scene_text() -> impl Strategy<Value = Text> {
                 let scales = Scales::new(&space, &matter);
                 space.write(&mut text);
                 time.write(&mut text, &scales);
-                method.write(&mut text, matter.soil.is_some());
+                method.write(&mut text);
                 matter.write(&mut text);
                 let ends = ends(&space, &bodies, &gaps);
                 for (body, ends) in bodies.iter().zip(ends) {
@@ -307,12 +307,9 @@ fn method() -> impl Strategy<Value = Method> {
 }
 
 impl Method {
-    /// Keys that the method does not have are left out; relaxed Taylor knows one phase only.
-    fn write(&self, text: &mut String, two_phases: bool) {
-        let reconstruction = match self.reconstruction {
-            "relaxed-taylor" if two_phases => "taylor",
-            other => other,
-        };
+    /// Keys that the method does not have are left out.
+    fn write(&self, text: &mut String) {
+        let reconstruction = self.reconstruction;
         line!(
             text,
             "[method]\nbasis = \"{}\"\nreconstruction = \"{reconstruction}\"",

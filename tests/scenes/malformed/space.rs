@@ -51,6 +51,8 @@ pub(super) const SAND: &[Case] = &[
      &["grid.cells = [60000, 60000]", "the box around the bodies", "at most 100000000"]),
     ("two phases", Set("material={phases=2, strain=\"large\", porosity=0.4, solid_density=2e3, liquid_density=1e3, liquid_bulk_modulus=1e8, permeability=1e-4, law={neo-hookean={youngs_modulus=1e6, poissons_ratio=0}}}\nboundary=[]"),
      &["material.law", "linear-elastic with two phases in the plane"]),
+    ("relaxed Taylor with two phases", Set("material={phases=2, strain=\"small\", porosity=0.4, solid_density=2e3, liquid_density=1e3, liquid_bulk_modulus=1e8, permeability=1e-4, law={linear-elastic={youngs_modulus=1e6, poissons_ratio=0}}}\nmethod.reconstruction=relaxed-taylor\nboundary=[]"),
+     &["method.reconstruction = \"relaxed-taylor\"", "beyond one axis it knows one phase only"]),
     ("half the digits", Set("method.scalar=f32"), &["method.scalar = \"f32\" is not possible in this version", "\"f64\""]),
     ("cubic functions", Set("method.degree=3"), &["method.degree = 3 is not possible in this version", "1 or 2"]),
     ("sub-points", Set("method.basis=dual-domain\nmethod.subpoints=2"), &["method.subpoints = 2 is not possible in this version"]),

@@ -91,8 +91,6 @@ pub(super) const MATERIAL: &[Case] = &[
     ("drag as a number", Set("material.drag=1"), &["material.drag = 1 is a whole number", "\"implicit\""]),
     ("an unknown key", Set("material.tortuosity=1"), &["material.tortuosity is not a key", "permeability_exponent, drag"]),
     ("no gravity", Set("load.gravity=0"), &["load.gravity = 0", "positive number (m/s2)"]),
-    ("relaxed Taylor", Set("method.reconstruction=relaxed-taylor"),
-     &["method.reconstruction = \"relaxed-taylor\"", "one phase only so far", "\"shepard\", \"taylor\" or \"spline\""]),
 ];
 
 /// Edits of [`GOOD`].
