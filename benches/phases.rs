@@ -45,7 +45,7 @@ impl MethodVisitor<f64> for Build {
         R: Reconstruction<f64, 1> + Clone + Send + 'static,
     {
         match self.0 {
-            Some(drag) if !R::PARTICLE_MATRIX => {
+            Some(drag) => {
                 let phase = TwoPhase {
                     porosity: 0.4,
                     solid_density: 2.6e3,
@@ -61,7 +61,7 @@ impl MethodVisitor<f64> for Build {
                     pressure: -1e4,
                 })
             }
-            _ => stepper(basis, reconstruction, OnePhase, |_| ()),
+            None => stepper(basis, reconstruction, OnePhase, |_| ()),
         }
     }
 }

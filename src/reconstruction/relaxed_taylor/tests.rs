@@ -8,6 +8,11 @@ use crate::basis::Linear;
 use crate::grid::Grid;
 use crate::particles::Bins;
 
+/// By a wave; the particles rest.
+fn crossed(wave: f64) -> Crossed<f64> {
+    Crossed { wave, motion: 0.0 }
+}
+
 /// Momentum and kinetic energy of unequal masses before and after: the one is kept, the other never raised, and a
 /// velocity that the fit sees is left alone.
 #[test]
@@ -20,7 +25,7 @@ fn a_weighted_relaxation_keeps_the_momentum_and_never_raises_the_energy() {
     let cloud = Cloud::new(&grid, &bins, &positions, &volumes).unwrap();
     let momentum = |v: &[f64]| mass.iter().zip(v).map(|(m, v)| m * v).sum::<f64>();
     let energy = |v: &[f64]| mass.iter().zip(v).map(|(m, v)| m * v * v).sum::<f64>();
-    for crossed in [0.1, 0.7, 1.0].map(|wave| Crossed { wave, motion: 0.0 }) {
+    for crossed in [0.1, 0.7, 1.0].map(crossed) {
         let mut fit = RelaxedTaylor::<f64, 1, 3>::for_degree(2);
         fit.prepare(&cloud);
         let rough: Vec<f64> = (0..17).map(|p| f64::from(p * 11 % 7) - 2.0).collect();
@@ -66,7 +71,7 @@ fn a_slope_from_the_neighbours_leaves_the_mean_of_a_cell_alone() {
             let mut stress: Vec<f64> = positions.iter().map(|x| x[0].floor()).collect();
             let before = pull(&mut fit, &stress);
             assert_relative_eq!(before, 2.0, epsilon = 1e-12);
-            fit.relax(&cloud, None, &[0.01; 5], &mut stress);
+            fit.relax(&cloud, None, &[crossed(0.01); 5], &mut stress);
             let middle = &stress[2 * per_cell..3 * per_cell];
             assert!(middle[0] < 2.0 && middle[per_cell - 1] > 2.0, "{middle:?}");
             (pull(&mut fit, &stress) - before).abs()
@@ -90,7 +95,7 @@ fn cells_alone_are_relaxed_as_four_at_once() {
             fit.prepare(&cloud);
             fit.cells.iter_mut().for_each(|cell| cell.kind = kind);
             let mut values: Vec<f64> = (0..positions.len()).map(|p| (p * 11 % 7) as f64).collect();
-            fit.relax(&cloud, None, &[0.3; 5], &mut values);
+            fit.relax(&cloud, None, &[crossed(0.3); 5], &mut values);
             values
         };
         let (four, alone) = (relaxed(Kind::Four), relaxed(Kind::Alone));

@@ -146,3 +146,62 @@ impl<T: Scalar, const D: usize> Joint<T, D> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use nalgebra::vector;
+
+    use super::*;
+    use crate::basis::Linear;
+    use crate::stepper::Forcing;
+
+    /// Of a chain of five DOFs, with the shares of a linear mass matrix.
+    fn fill(matrix: &mut Banded<f64>, mass: f64) {
+        for i in 0..5 {
+            matrix.add(i, i, mass * if i % 4 == 0 { 2.0 } else { 4.0 });
+            if i > 0 {
+                matrix.add(i, i - 1, mass);
+            }
+        }
+    }
+
+    /// Both equations with every entry, for drags from none to 1e12 masses; the sum of the first is the momentum of the whole.
+    #[test]
+    fn the_momentum_of_the_whole_keeps_its_digits_under_any_drag() {
+        let grid = Grid::new(vector![0.0], vector![4.0], [4]).unwrap();
+        let (mut solid, mut liquid) = (Banded::zeros(5, 1), Banded::zeros(5, 1));
+        fill(&mut solid, 3.0);
+        fill(&mut liquid, 0.7);
+        for drag in [0.0, 1.0, 1e6, 1e12] {
+            let mut joint = Joint::<f64, 1>::new(&Linear::default(), &grid, 0);
+            fill(joint.drag.band_mut(), drag);
+            let right: Vec<_> = (0..10).map(|k| vector![f64::from(k * k % 7) - 2.5]).collect();
+            joint.right.copy_from_slice(&right);
+            joint.assemble(&solid, &liquid, 0.5);
+            let forcing = Forcing::none();
+            joint.solve([Walls::of_solid(&[], &forcing), Walls::of_liquid(&[], &forcing)]);
+            let of =
+                |first: usize| -> Vec<_> { joint.right.iter().skip(first).step_by(2).copied().collect() };
+            let (acceleration, slip) = (of(0), of(1));
+            let [s, w, d] = [
+                solid.multiply(&acceleration),
+                liquid.multiply(&acceleration),
+                liquid.multiply(&slip),
+            ];
+            let (mut whole, mut wished) = (0.0, 0.0);
+            for i in 0..5 {
+                let found = s[i][0] + w[i][0] + d[i][0];
+                assert_relative_eq!(found, right[2 * i][0], epsilon = 1e-13);
+                whole += found;
+                wished += right[2 * i][0];
+            }
+            assert_relative_eq!(whole, wished, epsilon = 1e-13);
+            let resisted = joint.drag.band().multiply(&slip);
+            for i in 0..5 {
+                let found = w[i][0] + d[i][0] + 0.5 * resisted[i][0];
+                assert_relative_eq!(found, right[2 * i + 1][0], epsilon = 1e-12);
+            }
+        }
+    }
+}
