@@ -147,7 +147,7 @@ where
     ///
     /// # Errors
     /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside the grid, a constant of the phase makes no
-    /// sense, or the reconstruction is of one phase only ([`Reconstruction::PARTICLE_MATRIX`]).
+    /// sense, or the reconstruction is of one phase only beyond one axis ([`Reconstruction::PARTICLE_MATRIX`]).
     pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
         let Setup {
             grid,

@@ -66,7 +66,7 @@ where
         ReconstructionKind::Taylor => bar(basis, Fit::for_degree(degree), cells, start),
         ReconstructionKind::RelaxedTaylor => bar(
             basis,
-            RelaxedTaylor::<DoubleDouble, 1, 3>::for_degree(degree),
+            RelaxedTaylor::<DoubleDouble, 1, 3>::for_basis(&basis),
             cells,
             start,
         ),
