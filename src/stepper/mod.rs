@@ -452,11 +452,12 @@ where
         &self.diagnostics
     }
 
-    /// Bytes allocated: particles, their cells, what basis and reconstruction hold, DOFs. Steps allocate nothing beyond, but
+    /// Bytes of the stepper and of all that it allocates: particles, their cells, what basis and reconstruction hold, DOFs. Steps allocate nothing beyond, but
     /// where particles move so far through a large grid that its [`Window`](crate::grid::Window) moves with them.
     pub fn bytes(&self) -> usize {
         let both = size_of::<T>() + size_of::<liquid::Sums<T, D>>() + 2 * size_of::<SVector<T, D>>();
-        self.particles.bytes()
+        size_of::<Self>()
+            + self.particles.bytes()
             + self.bins.bytes()
             + self.order.bytes()
             + self.basis.bytes()

@@ -70,12 +70,12 @@ fn the_error_of_the_rise_halves_with_the_cells() {
     check(52, [1.005, 1.007, 1.005]);
 }
 
-/// It stays within 3 %, on the soft side of particle sums with B-splines; what neighbours see otherwise than a cell itself creeps
-/// under the lasting load.
+/// It stays within 2 %, and nearer to 1 than particle sums with dual domain and B-splines. With a rate per time towards the fits with
+/// the neighbours it crept under the lasting load (0.977, 0.973, 1.006).
 #[test]
 fn relaxed_taylor_bears_slanted_free_sides() {
-    for (basis, expected) in BASES.into_iter().zip([0.977, 0.973, 1.006]) {
+    for (basis, expected) in BASES.into_iter().zip([0.982, 1.004, 1.000]) {
         let found = mean_rise(Method::new(basis, ReconstructionKind::RelaxedTaylor), 13);
-        assert!((found - expected).abs() < 5e-3, "{basis:?}: {found:.4}");
+        assert!((found - expected).abs() < 3e-3, "{basis:?}: {found:.4}");
     }
 }

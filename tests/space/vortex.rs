@@ -69,9 +69,9 @@ fn b_splines_are_of_second_order_on_a_free_ring() {
 
 #[test]
 fn relaxed_taylor_is_the_most_accurate_on_a_free_ring() {
-    check(&RING, LINEAR, RelaxedTaylor, &[(24, 4.0e-1)]);
-    check(&RING, DUAL_DOMAIN, RelaxedTaylor, &[(24, 3.70e-1)]);
-    check(&RING, BSPLINE, RelaxedTaylor, &[(24, 3.36e-1)]);
+    check(&RING, LINEAR, RelaxedTaylor, &[(24, 3.65e-1)]);
+    check(&RING, DUAL_DOMAIN, RelaxedTaylor, &[(24, 3.67e-1)]);
+    check(&RING, BSPLINE, RelaxedTaylor, &[(24, 3.22e-1)]);
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn published_taylor_needs_material_around() {
 fn fits_converge_within_a_block() {
     let kinds = [
         (Taylor, [2.26e-1, 1.37e-1, 1.28e-1]),
-        (RelaxedTaylor, [1.44e-1, 1.04e-1, 7.83e-2]),
+        (RelaxedTaylor, [1.47e-1, 1.12e-1, 8.6e-2]),
     ];
     for (kind, expected) in kinds {
         for (basis, expected) in [LINEAR, DUAL_DOMAIN, BSPLINE].into_iter().zip(expected) {
@@ -113,5 +113,5 @@ fn a_ring_in_a_block_is_no_better_with_particle_sums() {
     // So many particles, in spans, were once more than dual domain's windows held.
     check(&BLOCK, DUAL_DOMAIN, Shepard, &[(48, 4.33e-1)]);
     check(&BLOCK, BSPLINE, Shepard, &[(24, 1.03), (48, 2.73e-1)]);
-    check(&BLOCK, BSPLINE, RelaxedTaylor, &[(24, 2.01e-1)]);
+    check(&BLOCK, BSPLINE, RelaxedTaylor, &[(24, 2.53e-1)]);
 }
