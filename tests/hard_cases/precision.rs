@@ -64,12 +64,10 @@ where
     match method.reconstruction {
         ReconstructionKind::Shepard => bar(basis, Shepard, cells, start),
         ReconstructionKind::Taylor => bar(basis, Fit::for_degree(degree), cells, start),
-        ReconstructionKind::RelaxedTaylor => bar(
-            basis,
-            RelaxedTaylor::<DoubleDouble, 1, 3>::for_basis(&basis),
-            cells,
-            start,
-        ),
+        ReconstructionKind::RelaxedTaylor => {
+            let relaxed = RelaxedTaylor::<DoubleDouble, 1, 3>::for_basis(&basis);
+            bar(basis, relaxed, cells, start)
+        }
         ReconstructionKind::Spline => unreachable!("not one of the nine"),
     }
 }

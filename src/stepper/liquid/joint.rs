@@ -174,7 +174,7 @@ mod tests {
         fill(&mut solid, 3.0);
         fill(&mut liquid, 0.7);
         for drag in [0.0, 1.0, 1e6, 1e12] {
-            let mut joint = Joint::<f64, 1>::new(&Linear::default(), &grid, 0);
+            let mut joint = Joint::<f64, 1>::new(&Linear, &grid, 0);
             fill(joint.drag.band_mut(), drag);
             let right: Vec<_> = (0..10).map(|k| vector![f64::from(k * k % 7) - 2.5]).collect();
             joint.right.copy_from_slice(&right);
