@@ -64,12 +64,8 @@ pub struct Care {
 pub fn report(page: &str, case: &Case, care: Care, pictures: &Folder) -> Result<String, Box<dyn Error>> {
     let text = Scene::builtin(case.scene).ok_or("no such scene")?;
     let scene = Scene::from_toml(text, &[])?;
-    let methods = match scene.material.phases.count() {
-        1 => Method::ALL.to_vec(),
-        _ => Method::NINE.to_vec(),
-    };
     let plan = Plan {
-        methods,
+        methods: Method::all_in(scene.dimension(), scene.material.phases.count()),
         cells: case.cells.to_vec(),
         repeat: care.repeat,
         least_seconds: care.least_seconds,
