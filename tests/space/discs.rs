@@ -99,13 +99,12 @@ fn discs_meet_and_part_and_keep_momentum_and_energy() {
     }
 }
 
-/// Cells that hold both bodies fit one polynomial through them. Measured: energy between 0.85 and 1.12 of the first with linear
-/// functions, 0.91 and 1.40 with dual domain, 0.89 and 1.04 with B-splines.
+/// Cells that hold both bodies fit one polynomial through them. Measured: energy between 0.76 and 1.09 of the first with linear
+/// functions, 0.87 and 1.24 with dual domain, 0.86 and 1.07 with B-splines.
 #[test]
 fn relaxed_taylor_fits_one_polynomial_through_both_discs() {
-    for (basis, [lowest, highest]) in BASES.into_iter().zip([[0.7, 1.2], [0.7, 1.6], [0.7, 1.2]]) {
+    for (basis, [lowest, highest]) in BASES.into_iter().zip([[0.72, 1.15], [0.82, 1.35], [0.82, 1.12]]) {
         let found = impact(Method::new(basis, ReconstructionKind::RelaxedTaylor), 20);
-        println!("{basis:?} {found:?}");
         assert!(found.momentum < 1e-13, "{found:?}");
         assert!(
             found.energy[0] > lowest && found.energy[1] < highest,
