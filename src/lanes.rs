@@ -1,31 +1,28 @@
-//! Four numbers computed side by side.
+//! Some numbers computed side by side.
 //!
-//! A processor's vector unit adds or multiplies four `f64` in the time of one. Compilers rarely find that out for the sums of
-//! a particle method, so the passes over particles are written for [`Lanes`]: one lane for each
-//! of four particles of a cell. For `f64` and `f32` the lanes are a vector register (crate `wide`); for every other scalar,
+//! A processor's vector unit adds or multiplies four `f64`, or eight `f32`, in the time of one. Compilers rarely find that out
+//! for the sums of a particle method, so the passes over particles are written for [`Lanes`]: one lane for each
+//! of four or eight particles of a cell. For `f64` and `f32` the lanes are a vector register (crate `wide`); for every other scalar,
 //! dual numbers for instance, they are [`Four`], four scalars after one another: the same code, and the same result but for
-//! the rounding that [`Lanes::mul_add`] spares.
+//! the rounding that [`SideBySide::mul_add`] spares. What has a cell in each lane always has four.
 
 use std::any::Any;
 use std::ops::{Add, Div, Mul, Sub};
 
-use wide::{f32x4, f64x4};
+use wide::{f32x4, f32x8, f64x4};
 
 use crate::scalar::Scalar;
 
-/// Number of lanes.
+/// Number of lanes, unless told otherwise.
 pub const LANES: usize = 4;
 
-/// [`LANES`] numbers of type `T` that are computed with side by side.
-pub trait Lanes<T>:
+/// Number of lanes, at most.
+pub(crate) const MOST_LANES: usize = 8;
+
+/// Numbers of type `T` that are computed with side by side, however many they are: what the functions of a basis are made of.
+pub trait SideBySide<T>:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Send
 {
-    /// The given ones.
-    fn new(values: [T; LANES]) -> Self;
-
-    /// The numbers.
-    fn array(self) -> [T; LANES];
-
     /// The same one in every lane.
     fn splat(value: T) -> Self;
 
@@ -40,6 +37,18 @@ pub trait Lanes<T>:
 
     /// One where the number is greater than the other's, zero elsewhere.
     fn above(self, other: Self) -> Self;
+
+    /// What `f` makes of each number, one lane after another.
+    fn one_by_one<const K: usize>(self, f: impl FnMut(T) -> [[T; K]; 2]) -> [[Self; K]; 2];
+}
+
+/// `N` such numbers.
+pub trait Lanes<T, const N: usize = LANES>: SideBySide<T> {
+    /// The given ones.
+    fn new(values: [T; N]) -> Self;
+
+    /// The numbers.
+    fn array(self) -> [T; N];
 
     /// Whether every number lies between the others' and equals neither.
     #[inline(always)]
@@ -130,17 +139,27 @@ impl<T: Scalar> Div for Four<T> {
     }
 }
 
-impl<T: Scalar> Lanes<T> for Four<T> {
-    #[inline(always)]
-    fn new(values: [T; LANES]) -> Self {
-        Self(values)
+/// Two rows of `K` packs from what `f` makes of each number.
+#[inline(always)]
+fn packs<T: Scalar, V: Copy, const N: usize, const K: usize>(
+    numbers: [T; N],
+    mut f: impl FnMut(T) -> [[T; K]; 2],
+    new: impl Fn([T; N]) -> V,
+) -> [[V; K]; 2] {
+    let mut lanes = [[[T::zero(); N]; K]; 2];
+    for l in 0..N {
+        let rows = f(numbers[l]);
+        for row in 0..2 {
+            for k in 0..K {
+                lanes[row][k][l] = rows[row][k];
+            }
+        }
     }
+    let pack = |row: usize| std::array::from_fn(|k| new(lanes[row][k]));
+    [pack(0), pack(1)]
+}
 
-    #[inline(always)]
-    fn array(self) -> [T; LANES] {
-        self.0
-    }
-
+impl<T: Scalar> SideBySide<T> for Four<T> {
     #[inline(always)]
     fn splat(value: T) -> Self {
         Self([value; LANES])
@@ -167,6 +186,23 @@ impl<T: Scalar> Lanes<T> for Four<T> {
     }
 
     #[inline(always)]
+    fn one_by_one<const K: usize>(self, f: impl FnMut(T) -> [[T; K]; 2]) -> [[Self; K]; 2] {
+        packs(self.0, f, Self)
+    }
+}
+
+impl<T: Scalar> Lanes<T> for Four<T> {
+    #[inline(always)]
+    fn new(values: [T; LANES]) -> Self {
+        Self(values)
+    }
+
+    #[inline(always)]
+    fn array(self) -> [T; LANES] {
+        self.0
+    }
+
+    #[inline(always)]
     fn sums(packs: [Self; 4]) -> [T; 4] {
         packs.map(|Self([a, b, c, d])| (a + b) + (c + d))
     }
@@ -174,19 +210,8 @@ impl<T: Scalar> Lanes<T> for Four<T> {
 
 /// The vectors of a processor are the lanes of their own scalar only: asked for another one they answer with zeros.
 macro_rules! vector {
-    ($vector:ty, $scalar:ty) => {
-        impl<T: Scalar> Lanes<T> for $vector {
-            #[inline(always)]
-            fn new(values: [T; LANES]) -> Self {
-                let values: Option<[$scalar; LANES]> = same(values);
-                Self::new(values.unwrap_or_default())
-            }
-
-            #[inline(always)]
-            fn array(self) -> [T; LANES] {
-                same(self.to_array()).unwrap_or([T::zero(); LANES])
-            }
-
+    ($vector:ident, $scalar:ty, $lanes:literal, |$packs:ident| $sums:expr) => {
+        impl<T: Scalar> SideBySide<T> for $vector {
             #[inline(always)]
             fn splat(value: T) -> Self {
                 Self::splat(same(value).unwrap_or_default())
@@ -213,21 +238,51 @@ macro_rules! vector {
             }
 
             #[inline(always)]
+            fn one_by_one<const K: usize>(self, f: impl FnMut(T) -> [[T; K]; 2]) -> [[Self; K]; 2] {
+                packs(self.array(), f, <Self as Lanes<T, $lanes>>::new)
+            }
+        }
+
+        impl<T: Scalar> Lanes<T, $lanes> for $vector {
+            #[inline(always)]
+            fn new(values: [T; $lanes]) -> Self {
+                let values: Option<[$scalar; $lanes]> = same(values);
+                Self::new(values.unwrap_or_default())
+            }
+
+            #[inline(always)]
+            fn array(self) -> [T; $lanes] {
+                same(self.to_array()).unwrap_or([T::zero(); $lanes])
+            }
+
+            #[inline(always)]
             fn are_between(self, low: Self, high: Self) -> bool {
                 (self.simd_gt(low) & high.simd_gt(self)).all()
             }
 
             #[inline(always)]
-            fn sums(packs: [Self; 4]) -> [T; 4] {
-                let [a, b, c, d] = Self::transpose(packs);
-                ((a + b) + (c + d)).array()
+            fn sums($packs: [Self; 4]) -> [T; 4] {
+                $sums
             }
         }
     };
 }
 
-vector!(f64x4, f64);
-vector!(f32x4, f32);
+vector!(f64x4, f64, 4, |packs| {
+    let [a, b, c, d] = f64x4::transpose(packs);
+    ((a + b) + (c + d)).array()
+});
+vector!(f32x4, f32, 4, |packs| {
+    let [a, b, c, d] = f32x4::transpose(packs);
+    ((a + b) + (c + d)).array()
+});
+vector!(f32x8, f32, 8, |packs| {
+    let halves = packs.map(|pack| {
+        let [a, b, c, d, e, f, g, h] = pack.to_array();
+        f32x4::new([a, b, c, d]) + f32x4::new([e, f, g, h])
+    });
+    f32x4::sums(halves)
+});
 
 #[cfg(test)]
 mod tests {
@@ -235,6 +290,9 @@ mod tests {
 
     fn check<T: Scalar, V: Lanes<T>>() {
         let numbers = [0.5, -2.0, 3.0, 4.0].map(T::lit);
+        let [[half], [double]] = V::new(numbers).one_by_one(|x| [[x / T::lit(2.0)], [x + x]]);
+        assert_eq!((half + half).array(), numbers);
+        assert_eq!(double.array()[3], T::lit(8.0));
         let (a, two) = (V::new(numbers), V::splat(T::lit(2.0)));
         assert_eq!(a.array(), numbers);
         assert_eq!(
@@ -253,6 +311,18 @@ mod tests {
         assert_eq!(
             V::sums([a, two, a + two, a * two]),
             [5.5, 8.0, 13.5, 11.0].map(T::lit)
+        );
+    }
+
+    #[test]
+    fn eight_lanes_do_what_four_do() {
+        let numbers = [0.5, -2.0, 3.0, 4.0, 5.0, -1.5, 0.25, 8.0_f32];
+        let a = <f32x8 as Lanes<f32, 8>>::new(numbers);
+        assert_eq!(Lanes::<f32, 8>::array(a), numbers);
+        let one = f32x8::splat(1.0);
+        assert_eq!(
+            <f32x8 as Lanes<f32, 8>>::sums([a, one, a + one, a * one]),
+            [17.25, 8.0, 25.25, 17.25]
         );
     }
 

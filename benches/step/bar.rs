@@ -8,6 +8,7 @@ use materialpoint::method::{Method, MethodVisitor};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Reconstruction;
+use materialpoint::scalar::Scalar;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
 use nalgebra::vector;
 
@@ -42,21 +43,21 @@ impl Layout {
     }
 }
 
-impl MethodVisitor<f64> for Layout {
+impl<T: Scalar> MethodVisitor<T> for Layout {
     type Output = Box<dyn Simulation<1>>;
 
     fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
     where
-        B: BasisFamily<f64, 1> + Send + 'static,
-        R: Reconstruction<f64, 1> + Clone + Send + 'static,
+        B: BasisFamily<T, 1> + Send + 'static,
+        R: Reconstruction<T, 1> + Clone + Send + 'static,
     {
-        let grid = Grid::new(vector![0.0], vector![1.0], [self.cells]).expect("a valid grid");
+        let grid = Grid::new(vector![T::zero()], vector![T::one()], [self.cells]).expect("a valid grid");
         let points = lattice(&grid, grid.min(), grid.max(), [self.per_cell]);
-        let mut particles = Particles::at_rest(&points, DENSITY);
+        let mut particles = Particles::at_rest(&points, T::lit(DENSITY));
         for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
-            v[0] = velocity(x[0]);
+            v[0] = T::lit(velocity(x[0].primal()));
         }
-        let moduli = Moduli::uniaxial(MODULUS).expect("a positive modulus");
+        let moduli = Moduli::uniaxial(T::lit(MODULUS)).expect("a positive modulus");
         let stepper = Stepper::new(Setup {
             grid,
             basis,
@@ -80,5 +81,14 @@ pub fn fixed_ends() -> Forcing<f64, 1> {
 
 /// The stepper of one method.
 pub fn simulation(method: Method, layout: Layout) -> Box<dyn Simulation<1>> {
-    method.dispatch(layout).expect("a method of the table")
+    method
+        .dispatch::<f64, _, 1>(layout)
+        .expect("a method of the table")
+}
+
+/// The same in single precision.
+pub fn single_precision(method: Method, layout: Layout) -> Box<dyn Simulation<1>> {
+    method
+        .dispatch::<f32, _, 1>(layout)
+        .expect("a method of the table")
 }

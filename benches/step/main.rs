@@ -1,6 +1,7 @@
 //! One step of each method against a plain hand-written loop, over the number of particles.
 //!
-//! `cargo bench --bench step [FILTER]`; criterion prints millions of particle-steps per second as `Melem/s`.
+//! `cargo bench --bench step [FILTER]`; criterion prints millions of particle-steps per second as `Melem/s`. Filter `f32` for single beside
+//! double precision.
 
 mod bar;
 mod yardstick;
@@ -8,7 +9,7 @@ mod yardstick;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use materialpoint::method::Method;
 
-use bar::{Layout, STEP, fixed_ends, simulation};
+use bar::{Layout, STEP, fixed_ends, simulation, single_precision};
 use yardstick::Bar;
 
 const SIZES: [usize; 3] = [1_000, 100_000, 1_000_000];
@@ -64,5 +65,32 @@ fn yardsticks_agree(layout: Layout, step: f64) {
     }
 }
 
-criterion_group!(benches, steps);
+/// Single beside double precision. With 1e6 particles a cell is given 64: eight would be in cells of some hundred single-precision
+/// numbers, and one particle in ten so near an edge that its cell is looked up in each step.
+fn precisions(criterion: &mut Criterion) {
+    let forcing = fixed_ends();
+    for (per_cell, particles) in [(8, 100_000), (64, 1_000_000)] {
+        let layout = Layout {
+            cells: particles / per_cell,
+            per_cell,
+        };
+        let mut group = criterion.benchmark_group(format!("f32 and f64, {per_cell} per cell"));
+        group
+            .throughput(Throughput::Elements(particles as u64))
+            .sample_size(20);
+        let step = STEP / layout.cells as f64;
+        for method in Method::ALL {
+            for (name, mut stepper) in [
+                ("f64", simulation(method, layout)),
+                ("f32", single_precision(method, layout)),
+            ] {
+                group.bench_function(BenchmarkId::new(format!("{method} {name}"), particles), |b| {
+                    b.iter(|| stepper.step(step, &forcing).expect("a stable step"));
+                });
+            }
+        }
+    }
+}
+
+criterion_group!(benches, steps, precisions);
 criterion_main!(benches);

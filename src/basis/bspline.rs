@@ -1,7 +1,7 @@
 //! B-splines on open uniform knots.
 
 use super::tensor::{AxisFamily, Row, one_by_one};
-use crate::lanes::Lanes;
+use crate::lanes::SideBySide;
 use crate::scalar::Scalar;
 
 /// B-splines of degree $P$ on an open uniform knot vector $\xi$ (Cox-de Boor; Steffen, Kirby & Berzins 2008, journal section
@@ -80,7 +80,7 @@ fn all_knots_distinct(degree: usize, cells: usize, cell: usize) -> bool {
 
 /// The functions of [`inner`] at several points, written out.
 #[inline(always)]
-fn inner_lanes<T: Scalar, V: Lanes<T>, const W: usize>(unit: V) -> ([V; W], [V; W]) {
+fn inner_lanes<T: Scalar, V: SideBySide<T>, const W: usize>(unit: V) -> ([V; W], [V; W]) {
     let number = |n: f64| V::splat(T::lit(n));
     let (zero, one) = (number(0.0), number(1.0));
     let rest = one - unit;
@@ -142,7 +142,12 @@ macro_rules! degree {
             const UNIFORM: bool = true;
 
             #[inline(always)]
-            fn lanes<V: Lanes<T>>(&self, cells: usize, cell: usize, unit: V) -> ([V; $width], [V; $width]) {
+            fn lanes<V: SideBySide<T>>(
+                &self,
+                cells: usize,
+                cell: usize,
+                unit: V,
+            ) -> ([V; $width], [V; $width]) {
                 if all_knots_distinct($degree, cells, cell) {
                     inner_lanes(unit)
                 } else {

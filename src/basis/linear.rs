@@ -1,7 +1,7 @@
 //! Piecewise linear hat functions.
 
 use super::tensor::{AxisFamily, Row};
-use crate::lanes::Lanes;
+use crate::lanes::SideBySide;
 use crate::scalar::Scalar;
 
 /// Piecewise linear (P1) hat functions, one DOF per node: the basis of the original material point method
@@ -26,7 +26,7 @@ impl<T: Scalar> AxisFamily<T, 2> for Linear {
     const UNIFORM: bool = true;
 
     #[inline(always)]
-    fn lanes<V: Lanes<T>>(&self, _cells: usize, _cell: usize, unit: V) -> ([V; 2], [V; 2]) {
+    fn lanes<V: SideBySide<T>>(&self, _cells: usize, _cell: usize, unit: V) -> ([V; 2], [V; 2]) {
         let (zero, one) = (V::splat(T::zero()), V::splat(T::one()));
         ([one - unit, unit], [zero - one, one])
     }

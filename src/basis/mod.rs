@@ -21,7 +21,7 @@ use std::ops::Range;
 use nalgebra::SVector;
 
 use crate::grid::{Cell, Face, Grid, Side};
-use crate::lanes::Lanes;
+use crate::lanes::SideBySide;
 use crate::particles::Bins;
 use crate::scalar::Scalar;
 
@@ -76,7 +76,7 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     /// The functions of `cell` at several of its points, whose coordinates from 0 to 1 in the cell are `unit`. Only asked where
     /// [`BasisFamily::WIDTH`] is not zero.
     #[inline(always)]
-    fn factors<V: Lanes<T>>(&self, _grid: &Grid<T, D>, _cell: &Cell<D>, unit: &[V; D]) -> Factors<V, D> {
+    fn factors<V: SideBySide<T>>(&self, _grid: &Grid<T, D>, _cell: &Cell<D>, unit: &[V; D]) -> Factors<V, D> {
         let nothing = unit.map(|_| [V::splat(T::zero()); tensor::MOST_WIDTH]);
         Factors {
             value: nothing,

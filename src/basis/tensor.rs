@@ -6,7 +6,7 @@ use nalgebra::SVector;
 
 use super::BasisFamily;
 use crate::grid::{Cell, Grid};
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::SideBySide;
 use crate::scalar::Scalar;
 
 /// Most functions along an axis of a cell that can be computed for several points at once.
@@ -50,7 +50,7 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
     /// Values and slopes of [`AxisFamily::row`] at several points of a cell; only asked where [`AxisFamily::UNIFORM`].
     /// Unless told otherwise one point after the other.
     #[inline(always)]
-    fn lanes<V: Lanes<T>>(&self, cells: usize, cell: usize, unit: V) -> ([V; W], [V; W]) {
+    fn lanes<V: SideBySide<T>>(&self, cells: usize, cell: usize, unit: V) -> ([V; W], [V; W]) {
         one_by_one(self, cells, cell, unit)
     }
 
@@ -72,23 +72,24 @@ pub const fn width_in_lanes<T: Scalar, const W: usize, A: AxisFamily<T, W>>() ->
     if A::UNIFORM && W <= MOST_WIDTH { W } else { 0 }
 }
 
-/// [`AxisFamily::lanes`] by way of [`AxisFamily::row`].
-pub fn one_by_one<T: Scalar, const W: usize, A: AxisFamily<T, W> + ?Sized, V: Lanes<T>>(
+/// [`AxisFamily::lanes`] by way of [`AxisFamily::row`]. Out of the way of the cells that need it not.
+#[inline(never)]
+pub fn one_by_one<T: Scalar, const W: usize, A: AxisFamily<T, W> + ?Sized, V: SideBySide<T>>(
     family: &A,
     cells: usize,
     cell: usize,
     unit: V,
 ) -> ([V; W], [V; W]) {
-    let rows: [Row<T, W>; LANES] = unit.array().map(|unit| family.row(cells, cell, unit));
-    (
-        std::array::from_fn(|k| V::new(std::array::from_fn(|l| rows[l].value[k]))),
-        std::array::from_fn(|k| V::new(std::array::from_fn(|l| rows[l].slope[k]))),
-    )
+    let [value, slope] = unit.one_by_one(|unit| {
+        let row = family.row(cells, cell, unit);
+        [row.value, row.slope]
+    });
+    (value, slope)
 }
 
 /// The factors along each axis at the points of `cell` with the coordinates `unit`.
 #[inline(always)]
-pub fn factors<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>, V: Lanes<T>>(
+pub fn factors<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>, V: SideBySide<T>>(
     family: &A,
     grid: &Grid<T, D>,
     cell: &Cell<D>,
@@ -253,7 +254,7 @@ macro_rules! tensor_product_family {
             const CONSTANT_GRADIENT: bool = D == 1 && $degree == 1 && $width == 2;
 
             #[inline(always)]
-            fn factors<V: $crate::lanes::Lanes<T>>(
+            fn factors<V: $crate::lanes::SideBySide<T>>(
                 &self,
                 grid: &$crate::grid::Grid<T, D>,
                 cell: &$crate::grid::Cell<D>,

@@ -8,7 +8,7 @@ use nalgebra::{SMatrix, SVector};
 use super::spans::{Fault, Flaw, Moved};
 use super::window;
 use crate::grid::{Cell, Grid};
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::{Lanes, MOST_LANES};
 use crate::law::ConstitutiveLaw;
 use crate::particles::{Material, Movables, settle};
 use crate::phase::Phase;
@@ -34,18 +34,18 @@ pub(super) struct Block<T, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Block<T, D> {
-    /// Whether four more fit in.
+    /// Whether as many more fit in.
     #[inline(always)]
-    pub(super) fn has_room(&self) -> bool {
-        self.count + LANES <= BLOCK
+    pub(super) fn has_room(&self, more: usize) -> bool {
+        self.count + more <= BLOCK
     }
 
-    /// Notes the first `count` of four, component `(c, a)` at `[c][a]`.
+    /// Notes those of the first `count` lanes, component `(c, a)` at `[c][a]`.
     #[inline(always)]
-    pub(super) fn push<V: Lanes<T>>(&mut self, four: &[[V; D]; D], count: usize) {
-        if let Some(next) = self.increments[self.count..].first_chunk_mut::<LANES>() {
-            let components = four.map(|row| row.map(V::array));
-            for l in 0..LANES {
+    pub(super) fn push<V: Lanes<T, N>, const N: usize>(&mut self, lanes: &[[V; D]; D], count: usize) {
+        if let Some(next) = self.increments[self.count..].first_chunk_mut::<N>() {
+            let components = lanes.map(|row| row.map(V::array));
+            for l in 0..N {
                 next[l] = SMatrix::from_fn(|c, a| components[c][a][l]);
             }
             self.count += count;
@@ -76,6 +76,12 @@ impl<T: Scalar> Outcome<T> {
     #[inline(always)]
     pub(super) fn bound(&mut self, number: usize) {
         self.bounds = with_number(self.bounds, number);
+    }
+
+    /// Whether a particle left the grid.
+    #[inline(always)]
+    pub(super) fn has_lost_one(&self) -> bool {
+        self.left.is_some()
     }
 
     /// Takes in the bounds of others.
@@ -151,7 +157,7 @@ where
     let mut p = 0;
     while p < cells.len() && outcome.moved.fault.is_none() {
         block.count = 0;
-        while p + block.count < cells.len() && block.has_room() && outcome.left.is_none() {
+        while p + block.count < cells.len() && block.has_room(MOST_LANES) && outcome.left.is_none() {
             shift(p + block.count, &mut block, &mut particles, cells, &mut outcome);
         }
         let increments = &block.increments[..block.count];

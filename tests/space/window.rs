@@ -27,7 +27,7 @@ impl<const D: usize, B: BasisFamily<f64, D>> BasisFamily<f64, D> for Everywhere<
         self.0.take_in(grid, bins);
     }
 
-    fn factors<V: materialpoint::lanes::Lanes<f64>>(
+    fn factors<V: materialpoint::lanes::SideBySide<f64>>(
         &self,
         grid: &Grid<f64, D>,
         cell: &Cell<D>,

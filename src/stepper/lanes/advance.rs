@@ -2,10 +2,10 @@
 
 use nalgebra::SVector;
 
-use super::{Group, Pass};
+use super::{Group, Pass, with_lanes_for};
 use crate::basis::BasisFamily;
 use crate::grid::Cell;
-use crate::lanes::{LANES, Lanes, with_lanes_of};
+use crate::lanes::{Lanes, SideBySide};
 use crate::law::ConstitutiveLaw;
 use crate::particles::Movables;
 use crate::phase::Phase;
@@ -21,11 +21,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         particles: Movables<'_, T, D, L::State, P::Particle>,
         cells: &mut [Cell<D>],
     ) -> Outcome<T> {
-        with_lanes_of!(T, self.advance_in[_, _](motion, first, particles, cells))
+        with_lanes_for!(T, cells, self.advance_in[_, _](motion, first, particles, cells))
     }
 
     #[inline(never)]
-    fn advance_in<V: Lanes<T>, L: ConstitutiveLaw<T, D>, P: Phase<T, D>>(
+    fn advance_in<V: Lanes<T, N>, const N: usize, L: ConstitutiveLaw<T, D>, P: Phase<T, D>>(
         &self,
         motion: &Motion<'_, T, D, L, P>,
         first: usize,
@@ -40,37 +40,41 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
             #[inline(always)]
             |mut p, block, particles, cells, outcome| {
                 let (velocity, dt) = (motion.velocity, motion.dt);
-                if D == 1 {
-                    // Not those of the outcome, which other functions are given: these stay in registers.
-                    let mut bounds = NO_BOUNDS;
-                    while let (true, Some(group)) = (block.has_room(), Group::full_at(p, cells)) {
-                        bounds = with_number(bounds, self.grid.linear(&cells[p]));
-                        let places = particles.places();
-                        let increments = self.shift::<true, V>(velocity, dt, group, places, cells, outcome);
-                        block.push(&increments, LANES);
-                        p += LANES;
+                // Not those of the outcome, which other functions are given: these stay in registers.
+                let mut bounds = NO_BOUNDS;
+                while p < cells.len() && block.has_room(N) && !outcome.has_lost_one() {
+                    if D == 1 {
+                        while let (true, Some(group)) = (block.has_room(N), Group::<N>::full_at(p, cells)) {
+                            bounds = with_number(bounds, self.grid.linear(&cells[p]));
+                            let places = particles.places();
+                            let increments =
+                                self.shift::<true, V, N>(velocity, dt, group, places, cells, outcome);
+                            block.push(&increments, N);
+                            p += N;
+                        }
+                        if !block.has_room(N) || p >= cells.len() {
+                            break;
+                        }
                     }
-                    outcome.bound_by(bounds);
-                    if !block.has_room() || p >= cells.len() {
-                        return;
-                    }
+                    let group = Group::<N>::at(p, cells);
+                    bounds = with_number(bounds, self.grid.linear(&cells[p]));
+                    let places = particles.places();
+                    let increments = self.shift::<false, V, N>(velocity, dt, group, places, cells, outcome);
+                    block.push(&increments, group.count);
+                    p += group.count;
                 }
-                let group = Group::at(p, cells);
-                outcome.bound(self.grid.linear(&cells[p]));
-                let increments =
-                    self.shift::<false, V>(velocity, dt, group, particles.places(), cells, outcome);
-                block.push(&increments, group.count);
+                outcome.bound_by(bounds);
             },
         )
     }
 
     /// Moves the particles of a group, given their positions and displacements; returns their displacement gradients of the step.
     #[inline(always)]
-    fn shift<const FULL: bool, V: Lanes<T>>(
+    fn shift<const FULL: bool, V: Lanes<T, N>, const N: usize>(
         &self,
         velocity: &[SVector<T, D>],
         dt: T,
-        group: Group,
+        group: Group<N>,
         (positions, displacements): (&mut [SVector<T, D>], &mut [SVector<T, D>]),
         cells: &mut [Cell<D>],
         outcome: &mut Outcome<T>,
@@ -91,7 +95,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
 
     /// Of the particles of a group, their paths and the components of their displacement gradients.
     #[inline(always)]
-    fn increments<V: Lanes<T>>(
+    fn increments<V: SideBySide<T>>(
         &self,
         velocity: &[SVector<T, D>],
         dt: T,
@@ -110,9 +114,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
 
     /// Looks up the cells of a group of which not all clearly stayed.
     #[inline(never)]
-    fn settle(
+    fn settle<const N: usize>(
         &self,
-        group: Group,
+        group: Group<N>,
         positions: &mut [SVector<T, D>],
         cells: &mut [Cell<D>],
         outcome: &mut Outcome<T>,

@@ -4,10 +4,10 @@ use nalgebra::{SMatrix, SVector};
 
 use super::pairs::PairSums;
 use super::sums::{Parts, Sums};
-use super::{EachGroup, Group, Pass, each_group, tensors};
+use super::{EachGroup, Group, Pass, each_group, tensors, with_lanes_for};
 use crate::basis::BasisFamily;
 use crate::grid::Cell;
-use crate::lanes::{Lanes, with_lanes_of};
+use crate::lanes::Lanes;
 use crate::scalar::Scalar;
 
 /// Particles of a span; as many of everything as there are cells.
@@ -34,16 +34,20 @@ impl<T, const D: usize> Bodies<'_, T, D> {
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     /// Hands `sink(dof, mass)` what the particles add to the DOFs.
     pub(in super::super) fn sum_masses(&self, bodies: Bodies<'_, T, D>, sink: &mut impl FnMut(usize, T)) {
-        with_lanes_of!(T, self.masses_in(bodies, sink));
+        with_lanes_for!(T, bodies.cells, self.masses_in(bodies, sink));
     }
 
     #[inline(never)]
-    fn masses_in<V: Lanes<T>>(&self, bodies: Bodies<'_, T, D>, sink: &mut impl FnMut(usize, T)) {
+    fn masses_in<V: Lanes<T, N>, const N: usize>(
+        &self,
+        bodies: Bodies<'_, T, D>,
+        sink: &mut impl FnMut(usize, T),
+    ) {
         let mut sums = Sums::<V, D>::new();
         let mut sink = |i: usize, m: T, _| sink(i, m);
         let mut p = 0;
         while p < bodies.cells.len() {
-            let group = Group::at(p, bodies.cells);
+            let group = Group::<N>::at(p, bodies.cells);
             let cell = &bodies.cells[p];
             let factors = self.factors(cell, &group.vectors::<false, T, V, D>(bodies.positions));
             let parts = Parts {
@@ -63,15 +67,19 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         bodies: Bodies<'_, T, D>,
         matrix: &mut impl FnMut(usize, usize, T),
     ) {
-        with_lanes_of!(T, self.pairs_in(bodies, matrix));
+        with_lanes_for!(T, bodies.cells, self.pairs_in(bodies, matrix));
     }
 
     #[inline(never)]
-    fn pairs_in<V: Lanes<T>>(&self, bodies: Bodies<'_, T, D>, matrix: &mut impl FnMut(usize, usize, T)) {
+    fn pairs_in<V: Lanes<T, N>, const N: usize>(
+        &self,
+        bodies: Bodies<'_, T, D>,
+        matrix: &mut impl FnMut(usize, usize, T),
+    ) {
         let mut sums = PairSums::<V, D>::new();
         let mut p = 0;
         while p < bodies.cells.len() {
-            let group = Group::at(p, bodies.cells);
+            let group = Group::<N>::at(p, bodies.cells);
             let cell = &bodies.cells[p];
             let factors = self.factors(cell, &group.vectors::<false, T, V, D>(bodies.positions));
             sums.add(
@@ -93,11 +101,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         velocities: &[SVector<T, D>],
         sink: &mut impl FnMut(usize, SVector<T, D>),
     ) {
-        with_lanes_of!(T, self.momenta_in(bodies, velocities, sink));
+        with_lanes_for!(T, bodies.cells, self.momenta_in(bodies, velocities, sink));
     }
 
     #[inline(never)]
-    fn momenta_in<V: Lanes<T>>(
+    fn momenta_in<V: Lanes<T, N>, const N: usize>(
         &self,
         bodies: Bodies<'_, T, D>,
         velocities: &[SVector<T, D>],
@@ -107,7 +115,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         let mut sink = |i: usize, _, q| sink(i, q);
         let mut p = 0;
         while p < bodies.cells.len() {
-            let group = Group::at(p, bodies.cells);
+            let group = Group::<N>::at(p, bodies.cells);
             let cell = &bodies.cells[p];
             let factors = self.factors(cell, &group.vectors::<false, T, V, D>(bodies.positions));
             let mass = group.amounts::<false, T, V>(bodies.masses);
@@ -132,11 +140,15 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         felt: &impl Fn(usize, &SMatrix<T, D, D>) -> SMatrix<T, D, D>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) {
-        with_lanes_of!(T, self.masses_and_forces_in(bodies, material, felt, sink));
+        with_lanes_for!(
+            T,
+            bodies.cells,
+            self.masses_and_forces_in(bodies, material, felt, sink)
+        );
     }
 
     #[inline(never)]
-    fn masses_and_forces_in<V: Lanes<T>>(
+    fn masses_and_forces_in<V: Lanes<T, N>, const N: usize>(
         &self,
         bodies: Bodies<'_, T, D>,
         (volumes, stresses): (&[T], &[SMatrix<T, D, D>]),
@@ -169,16 +181,16 @@ struct MassesAndForces<'a, T, V, const D: usize, B, F, S> {
     sink: &'a mut S,
 }
 
-impl<T, V, const D: usize, B, F, S> EachGroup for MassesAndForces<'_, T, V, D, B, F, S>
+impl<T, V, const D: usize, const N: usize, B, F, S> EachGroup<N> for MassesAndForces<'_, T, V, D, B, F, S>
 where
     T: Scalar,
-    V: Lanes<T>,
+    V: Lanes<T, N>,
     B: BasisFamily<T, D>,
     F: Fn(usize, &SMatrix<T, D, D>) -> SMatrix<T, D, D>,
     S: FnMut(usize, T, SVector<T, D>),
 {
     #[inline(always)]
-    fn take<const FULL: bool>(&mut self, group: Group) {
+    fn take<const FULL: bool>(&mut self, group: Group<N>) {
         let (pass, bodies) = (self.pass, &self.bodies);
         let inverse = pass.grid.inverse_cell_size();
         let cell = &bodies.cells[group.first];
@@ -186,9 +198,9 @@ where
         let volume = group.amounts::<FULL, T, V>(self.volumes);
         let along: [V; D] = std::array::from_fn(|a| volume * V::splat(inverse[a]));
         let felt = self.felt;
-        let tensor = group.with::<FULL, _, _>(self.stresses, |lanes| {
+        let tensor: [[V; D]; D] = group.with::<FULL, _, _>(self.stresses, |lanes| {
             let particle = |l: usize| group.first + l.min(group.count - 1);
-            tensors::<T, V, D>(&std::array::from_fn(|l| felt(particle(l), &lanes[l])))
+            tensors(&std::array::from_fn(|l| felt(particle(l), &lanes[l])))
         });
         let weighted = std::array::from_fn(|c| std::array::from_fn(|a| tensor[c][a] * along[a]));
         let parts = Parts {

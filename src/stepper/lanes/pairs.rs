@@ -6,7 +6,7 @@
 use super::Pass;
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::grid::Cell;
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::{LANES, Lanes, SideBySide};
 use crate::scalar::Scalar;
 
 /// Most pairs of functions along an axis.
@@ -30,7 +30,7 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
     #[inline(always)]
     pub(super) fn new<T: Scalar>() -> Self
     where
-        V: Lanes<T>,
+        V: SideBySide<T>,
     {
         Self {
             cell: None,
@@ -42,7 +42,7 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
     #[inline(always)]
     pub(super) fn add_to<T: Scalar, B: BasisFamily<T, D>>(&mut self, factors: &Factors<V, D>, mass: V)
     where
-        V: Lanes<T>,
+        V: SideBySide<T>,
     {
         let count = Pass::<T, D, B>::PAIRS_ALONG;
         let mut products = [[mass; ALONG]; D];
@@ -76,7 +76,7 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
 
     /// The same for points of `cell`, one after another; `matrix(i, j, sum)`, `j <= i`, takes what the cell before them adds.
     #[inline(always)]
-    pub(super) fn add<T: Scalar, B: BasisFamily<T, D>>(
+    pub(super) fn add<T: Scalar, B: BasisFamily<T, D>, const N: usize>(
         &mut self,
         pass: &Pass<'_, T, D, B>,
         cell: &Cell<D>,
@@ -84,7 +84,7 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
         mass: V,
         matrix: &mut impl FnMut(usize, usize, T),
     ) where
-        V: Lanes<T>,
+        V: Lanes<T, N>,
     {
         if self.cell != Some(*cell) {
             self.flush(pass, matrix);
@@ -95,12 +95,12 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
 
     /// Hands the sums of the last cell over and starts again.
     #[inline(always)]
-    pub(super) fn flush<T: Scalar, B: BasisFamily<T, D>>(
+    pub(super) fn flush<T: Scalar, B: BasisFamily<T, D>, const N: usize>(
         &mut self,
         pass: &Pass<'_, T, D, B>,
         matrix: &mut impl FnMut(usize, usize, T),
     ) where
-        V: Lanes<T>,
+        V: Lanes<T, N>,
     {
         let Some(cell) = self.cell.take() else { return };
         let zero = V::splat(T::zero());

@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::Pass;
 use crate::basis::{BasisFamily, Factors};
 use crate::grid::Cell;
-use crate::lanes::Lanes;
+use crate::lanes::SideBySide;
 use crate::scalar::Scalar;
 
 /// The factors of one row: the value of the functions across it, and their slopes along the axes 1 and 2.
@@ -40,7 +40,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
 
     /// Products of the factors across the row at `k`.
     #[inline(always)]
-    pub(super) fn across<V: Lanes<T>>(factors: &Factors<V, D>, [k1, k2]: [usize; 2]) -> Across<V> {
+    pub(super) fn across<V: SideBySide<T>>(factors: &Factors<V, D>, [k1, k2]: [usize; 2]) -> Across<V> {
         let (value, slope) = (&factors.value, &factors.slope);
         let zero = V::splat(T::zero());
         if D == 1 {
@@ -63,7 +63,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
 
     /// Value of the field with the given DOFs, at the points with the given factors.
     #[inline(always)]
-    pub(super) fn value<V: Lanes<T>>(
+    pub(super) fn value<V: SideBySide<T>>(
         &self,
         first: usize,
         factors: &Factors<V, D>,
@@ -87,7 +87,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
 
     /// The same with the derivatives by the coordinates in cell sizes, component `c` by axis `a` at `[c][a]`.
     #[inline(always)]
-    pub(super) fn value_and_slopes<V: Lanes<T>>(
+    pub(super) fn value_and_slopes<V: SideBySide<T>>(
         &self,
         first: usize,
         factors: &Factors<V, D>,

@@ -9,7 +9,7 @@ use nalgebra::SVector;
 use super::Pass;
 use crate::basis::{BasisFamily, Factors};
 use crate::grid::Cell;
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::{LANES, Lanes, SideBySide};
 use crate::scalar::Scalar;
 
 /// DOFs of a cell, at most: four along each of three axes.
@@ -34,7 +34,7 @@ impl<V: Copy, const D: usize> Sums<V, D> {
     #[inline(always)]
     pub(super) fn new<T: Scalar>() -> Self
     where
-        V: Lanes<T>,
+        V: SideBySide<T>,
     {
         let zero = V::splat(T::zero());
         Self {
@@ -46,7 +46,7 @@ impl<V: Copy, const D: usize> Sums<V, D> {
 
     /// Adds `parts` at the DOFs of `cell`; `sink(dof, scalar, vector)` takes what is done with.
     #[inline(always)]
-    pub(super) fn add<T: Scalar, B: BasisFamily<T, D>>(
+    pub(super) fn add<T: Scalar, B: BasisFamily<T, D>, const N: usize>(
         &mut self,
         pass: &Pass<'_, T, D, B>,
         cell: &Cell<D>,
@@ -54,7 +54,7 @@ impl<V: Copy, const D: usize> Sums<V, D> {
         parts: &Parts<V, D>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) where
-        V: Lanes<T>,
+        V: Lanes<T, N>,
     {
         if self.cell == Some(*cell) {
             return self.add_to::<false, T, B>(pass, factors, parts);
@@ -77,7 +77,7 @@ impl<V: Copy, const D: usize> Sums<V, D> {
         factors: &Factors<V, D>,
         parts: &Parts<V, D>,
     ) where
-        V: Lanes<T>,
+        V: SideBySide<T>,
     {
         let zero = V::splat(T::zero());
         for row in 0..Pass::<T, D, B>::ROWS {
@@ -160,13 +160,13 @@ impl<V: Copy, const D: usize> Sums<V, D> {
 
     /// Hands all sums over and starts again.
     #[inline(always)]
-    pub(super) fn flush<T: Scalar, B: BasisFamily<T, D>>(
+    pub(super) fn flush<T: Scalar, B: BasisFamily<T, D>, const N: usize>(
         &mut self,
         pass: &Pass<'_, T, D, B>,
         scalars: bool,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) where
-        V: Lanes<T>,
+        V: Lanes<T, N>,
     {
         if self.cell.is_none() {
             return;
@@ -183,14 +183,14 @@ impl<V: Copy, const D: usize> Sums<V, D> {
 
     /// Hands the sums of one column over.
     #[inline(always)]
-    fn flush_column<T: Scalar, B: BasisFamily<T, D>>(
+    fn flush_column<T: Scalar, B: BasisFamily<T, D>, const N: usize>(
         &self,
         pass: &Pass<'_, T, D, B>,
         column: usize,
         scalars: bool,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) where
-        V: Lanes<T>,
+        V: Lanes<T, N>,
     {
         let Some(cell) = self.cell else { return };
         let first = pass.first_dof(&cell) + column;

@@ -4,10 +4,10 @@ use nalgebra::SVector;
 
 use super::mass_and_force::Bodies;
 use super::sums::{Parts, Sums};
-use super::{EachGroup, Group, Pass, each_group};
+use super::{EachGroup, Group, Pass, each_group, with_lanes_for};
 use crate::basis::{BasisFamily, Factors};
 use crate::grid::Cell;
-use crate::lanes::{Lanes, with_lanes_of};
+use crate::lanes::{Lanes, SideBySide};
 use crate::scalar::Scalar;
 use crate::stepper::diagnostics;
 
@@ -30,17 +30,22 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         sink: &mut impl FnMut(usize, SVector<T, D>),
     ) -> diagnostics::Sums<T, D> {
         if MAP {
-            with_lanes_of!(
+            with_lanes_for!(
                 T,
+                bodies.cells,
                 self.accelerate_and_map_in(bodies, velocities, acceleration, sink)
             )
         } else {
-            with_lanes_of!(T, self.accelerate_in(bodies, velocities, acceleration))
+            with_lanes_for!(
+                T,
+                bodies.cells,
+                self.accelerate_in(bodies, velocities, acceleration)
+            )
         }
     }
 
     #[inline(never)]
-    fn accelerate_and_map_in<V: Lanes<T>>(
+    fn accelerate_and_map_in<V: Lanes<T, N>, const N: usize>(
         &self,
         bodies: Bodies<'_, T, D>,
         velocities: &mut [SVector<T, D>],
@@ -69,18 +74,18 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     }
 
     #[inline(never)]
-    fn accelerate_in<V: Lanes<T>>(
+    fn accelerate_in<V: Lanes<T, N>, const N: usize>(
         &self,
         bodies: Bodies<'_, T, D>,
         velocities: &mut [SVector<T, D>],
         acceleration: Acceleration<'_, T, D>,
     ) -> diagnostics::Sums<T, D> {
-        self.each_accelerated::<V>(bodies, velocities, acceleration, |_, _, _| {})
+        self.each_accelerated::<V, N>(bodies, velocities, acceleration, |_, _, _| {})
     }
 
     /// Calls `f(cell, factors, momentum)` for each group when its velocities are new.
     #[inline(always)]
-    fn each_accelerated<V: Lanes<T>>(
+    fn each_accelerated<V: Lanes<T, N>, const N: usize>(
         &self,
         bodies: Bodies<'_, T, D>,
         velocities: &mut [SVector<T, D>],
@@ -121,15 +126,15 @@ struct Accelerating<'a, T, V, const D: usize, B, F> {
     f: F,
 }
 
-impl<T, V, const D: usize, B, F> EachGroup for Accelerating<'_, T, V, D, B, F>
+impl<T, V, const D: usize, const N: usize, B, F> EachGroup<N> for Accelerating<'_, T, V, D, B, F>
 where
     T: Scalar,
-    V: Lanes<T>,
+    V: Lanes<T, N>,
     B: BasisFamily<T, D>,
     F: FnMut(&Cell<D>, &Factors<V, D>, &[V; D]),
 {
     #[inline(always)]
-    fn take<const FULL: bool>(&mut self, group: Group) {
+    fn take<const FULL: bool>(&mut self, group: Group<N>) {
         let (pass, bodies) = (self.pass, &self.bodies);
         let cell = &bodies.cells[group.first];
         let factors = pass.factors(cell, &group.vectors::<FULL, T, V, D>(bodies.positions));
@@ -150,7 +155,7 @@ where
 
 /// Sizes of vectors. Along one axis without the root, which takes as long as a dozen sums.
 #[inline(always)]
-fn size<T: Scalar, V: Lanes<T>, const D: usize>(vectors: &[V; D]) -> V {
+fn size<T: Scalar, V: SideBySide<T>, const D: usize>(vectors: &[V; D]) -> V {
     if D == 1 {
         return vectors[0].abs();
     }
