@@ -1,9 +1,11 @@
 //! Symmetric banded matrices.
 
+mod both_ends;
 mod narrow;
 
 use nalgebra::SVector;
 
+use crate::parallel::many_threads;
 use crate::scalar::Scalar;
 
 /// A symmetric matrix of order `n` with half band width `w`: entries `(i, j)` with `|i - j| <= w`, the lower
@@ -16,6 +18,8 @@ pub struct Banded<T> {
     order: usize,
     half_band: usize,
     rows: Vec<T>,
+    /// The first row that was eliminated upwards; `order` if none was.
+    upwards: usize,
 }
 
 impl<T: Scalar> Banded<T> {
@@ -24,6 +28,7 @@ impl<T: Scalar> Banded<T> {
         Self {
             order,
             half_band,
+            upwards: order,
             rows: vec![T::zero(); order * (half_band + 1)],
         }
     }
@@ -77,6 +82,7 @@ impl<T: Scalar> Banded<T> {
     pub fn copy_from(&mut self, other: &Self) {
         self.order = other.order;
         self.half_band = other.half_band;
+        self.upwards = other.upwards;
         self.rows.clone_from(&other.rows);
     }
 
@@ -150,15 +156,33 @@ impl<T: Scalar> Banded<T> {
     /// Factorises in place; the diagonal then holds the inverse pivots. A pivot that vanishes against the matrix's largest
     /// diagonal entry marks a DOF that no mass reaches: it is cut off, and [`Banded::solve`] returns zero for it.
     pub fn factorise(&mut self) {
-        let diagonal = self.rows.chunks_exact(self.half_band + 1);
-        let largest = diagonal.fold(T::zero(), |m, row| m.max(row[self.half_band].abs()));
-        let negligible = largest * T::default_epsilon() * T::default_epsilon();
+        let negligible = self.negligible();
+        self.upwards = self.order;
         match self.half_band {
             1 => narrow::factorise::<T, 2>(&mut self.rows, negligible),
             2 => narrow::factorise::<T, 3>(&mut self.rows, negligible),
             3 => narrow::factorise::<T, 4>(&mut self.rows, negligible),
             _ => self.factorise_wide(negligible),
         }
+    }
+
+    /// The same from both ends at once for one to three bands beside the diagonal: two chains of inverse pivots that do not wait for each other,
+    /// and that two threads share. Only [`Banded::solve`] knows such factors.
+    pub fn factorise_from_both_ends(&mut self) {
+        let (negligible, parallel) = (self.negligible(), many_threads());
+        self.upwards = match self.half_band {
+            1 => both_ends::factorise::<T, 2>(&mut self.rows, negligible, parallel),
+            2 => both_ends::factorise::<T, 3>(&mut self.rows, negligible, parallel),
+            3 => both_ends::factorise::<T, 4>(&mut self.rows, negligible, parallel),
+            _ => return self.factorise(),
+        };
+    }
+
+    /// What vanishes against the largest diagonal entry.
+    fn negligible(&self) -> T {
+        let diagonal = self.rows.chunks_exact(self.half_band + 1);
+        let largest = diagonal.fold(T::zero(), |m, row| m.max(row[self.half_band].abs()));
+        largest * T::default_epsilon() * T::default_epsilon()
     }
 
     fn factorise_wide(&mut self, negligible: T) {
@@ -189,11 +213,23 @@ impl<T: Scalar> Banded<T> {
 
     /// Solves for component `axis` with the factorised matrix.
     pub fn solve<const D: usize>(&self, x: &mut [SVector<T, D>], axis: usize) {
+        if self.upwards < self.order {
+            return self.solve_from_both_ends(x, axis);
+        }
         match self.half_band {
             1 => narrow::solve::<T, D, 2>(&self.rows, x, axis),
             2 => narrow::solve::<T, D, 3>(&self.rows, x, axis),
             3 => narrow::solve::<T, D, 4>(&self.rows, x, axis),
             _ => self.solve_wide(x, axis),
+        }
+    }
+
+    fn solve_from_both_ends<const D: usize>(&self, x: &mut [SVector<T, D>], axis: usize) {
+        let parallel = many_threads();
+        match self.half_band {
+            1 => both_ends::solve::<T, D, 2>(&self.rows, x, axis, parallel),
+            2 => both_ends::solve::<T, D, 3>(&self.rows, x, axis, parallel),
+            _ => both_ends::solve::<T, D, 4>(&self.rows, x, axis, parallel),
         }
     }
 
@@ -358,6 +394,54 @@ mod tests {
     }
 
     #[test]
+    fn from_both_ends_it_solves_the_same() {
+        for w in 1..=3 {
+            for n in 1..30 {
+                let (mut one_way, _) = sample(n, w);
+                let mut both_ways = one_way.clone();
+                one_way.factorise();
+                both_ways.factorise_from_both_ends();
+                assert!(n < w + 2 || both_ways.upwards < n);
+                let right: Vec<_> = (0..n).map(|i| vector![1.0, (i * i % 17) as f64 - 8.0]).collect();
+                let (mut x, mut y) = (right.clone(), right);
+                one_way.solve(&mut x, 1);
+                both_ways.solve(&mut y, 1);
+                for (x, y) in x.iter().zip(&y) {
+                    assert_relative_eq!(x[1], y[1], epsilon = 1e-12, max_relative = 1e-12);
+                    assert_eq!(y[0], 1.0);
+                }
+            }
+        }
+    }
+
+    fn two_threads_do_what_one_does<const W: usize>() {
+        let n = 20_001;
+        let entry = |k: usize| {
+            if k % W == W - 1 {
+                5.0
+            } else {
+                (k * k % 5) as f64 / 3.0 - 0.7
+            }
+        };
+        let rows: Vec<f64> = (0..n * W).map(entry).collect();
+        let right: Vec<_> = (0..n).map(|i| vector![(i * i % 17) as f64 - 8.0]).collect();
+        let found = [false, true].map(|parallel| {
+            let (mut rows, mut x) = (rows.clone(), right.clone());
+            both_ends::factorise::<f64, W>(&mut rows, 0.0, parallel);
+            both_ends::solve::<f64, 1, W>(&rows, &mut x, 0, parallel);
+            (rows, x)
+        });
+        assert_eq!(found[0], found[1]);
+    }
+
+    #[test]
+    fn two_threads_factorise_and_solve_to_the_bit_as_one_alone() {
+        two_threads_do_what_one_does::<2>();
+        two_threads_do_what_one_does::<3>();
+        two_threads_do_what_one_does::<4>();
+    }
+
+    #[test]
     fn it_solves_what_a_dense_factorisation_solves() {
         for (n, w) in [(1, 0), (5, 1), (9, 3), (4, 3)] {
             let (mut banded, dense) = sample(n, w);
@@ -380,23 +464,27 @@ mod tests {
     #[test]
     fn a_dof_without_mass_is_cut_off_and_the_rest_is_solved() {
         let (_, dense) = sample(6, 2);
-        let mut x = vec![vector![1.0]; 6];
-        let mut cut = Banded::zeros(6, 2);
-        for i in 0..6_usize {
-            for j in i.saturating_sub(2)..=i {
-                if i != 3 && j != 3 {
-                    cut.add(i, j, dense[(i, j)]);
+        let factorise = [
+            Banded::factorise as fn(&mut Banded<f64>),
+            Banded::factorise_from_both_ends,
+        ];
+        for (massless, factorise) in (0..6).flat_map(|i| factorise.map(|f| (i, f))) {
+            let mut cut = Banded::zeros(6, 2);
+            for i in 0..6_usize {
+                for j in i.saturating_sub(2)..=i {
+                    if i != massless && j != massless {
+                        cut.add(i, j, dense[(i, j)]);
+                    }
                 }
             }
-        }
-        x[3] = vector![0.0];
-        let right = x.clone();
-        let unfactorised = cut.clone();
-        cut.factorise();
-        cut.solve(&mut x, 0);
-        assert_eq!(x[3][0], 0.0);
-        for (a, b) in unfactorised.multiply(&x).iter().zip(&right) {
-            assert!((a - b).norm() < 1e-13);
+            let right = std::array::from_fn::<_, 6, _>(|i| vector![f64::from(i != massless)]);
+            let (unfactorised, mut x) = (cut.clone(), right);
+            factorise(&mut cut);
+            cut.solve(&mut x, 0);
+            assert_eq!(x[massless][0], 0.0);
+            for (a, b) in unfactorised.multiply(&x).iter().zip(&right) {
+                assert!((a - b).norm() < 1e-13);
+            }
         }
     }
 }

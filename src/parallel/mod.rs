@@ -47,7 +47,7 @@ fn halve<W: Sliced>(parallel: bool, span: usize, first: usize, work: W, f: &(imp
 
 /// Does both, at once if `parallel`. Not generic, for the sake of compile time: a call through a pointer for thousands of
 /// particles costs nothing, `rayon::join` in every pass of every stepper minutes.
-fn both(parallel: bool, a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
+pub(crate) fn both(parallel: bool, a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
     #[cfg(feature = "rayon")]
     if parallel {
         rayon::join(a, b);

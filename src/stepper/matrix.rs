@@ -148,7 +148,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
         if mass != VelocityMass::Constrained {
             if fresh {
                 factor.copy_from(band);
-                factor.factorise();
+                factor.factorise_from_both_ends();
             }
             factor.solve(right, 0);
             return;
@@ -158,7 +158,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             walls.for_each_held(|dof, axis, velocity, acceleration| {
                 factor.prescribe(dof, axis, pick(velocity, acceleration), right);
             });
-            factor.factorise();
+            factor.factorise_from_both_ends();
         } else {
             walls.for_each_held(|dof, axis, velocity, acceleration| {
                 band.move_known(dof, axis, pick(velocity, acceleration), right);

@@ -2,33 +2,14 @@
 
 use nalgebra::SVector;
 
-use super::inverse;
+use super::both_ends::Downwards;
 use crate::scalar::Scalar;
 
 /// `L D L^T` in place, inverse pivots on the diagonal.
 pub(super) fn factorise<T: Scalar, const W: usize>(rows: &mut [T], negligible: T) {
     let (rows, _) = rows.as_chunks_mut::<W>();
-    // The W - 1 rows before, the latest last; the last entry of each is its inverse pivot.
-    let mut before = [[T::zero(); W]; W];
-    for row in rows {
-        // L D, left to right; column k belongs to the row `before[k + 1]`.
-        let mut entries = *row;
-        for k in 0..W - 1 {
-            for m in 0..k {
-                entries[k] -= entries[m] * before[k + 1][W - 1 - (k - m)];
-            }
-        }
-        let mut pivot = row[W - 1];
-        for k in 0..W - 1 {
-            row[k] = entries[k] * before[k + 1][W - 1];
-            pivot -= entries[k] * row[k];
-        }
-        row[W - 1] = inverse(pivot, negligible);
-        for k in 1..W {
-            before[k - 1] = before[k];
-        }
-        before[W - 1] = *row;
-    }
+    let mut down = Downwards::new();
+    rows.iter_mut().for_each(|row| down.take(row, negligible));
 }
 
 /// Solves for component `axis`.
