@@ -7,7 +7,7 @@ use crate::field::Field;
 use crate::lanes::{LANES, Lanes};
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
-use crate::taylor::{MOST_COMPONENTS, taylor_functions};
+use crate::taylor::{MOST_COMPONENTS, Rights, taylor_functions};
 
 /// Least share of its mean that a fitted density keeps at the points.
 const LEAST_DENSITY: f64 = 1e-2;
@@ -95,19 +95,23 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
 
     /// In which of four cells that may have to be done.
     #[inline(always)]
-    pub(super) fn may_be_negative<V: Lanes<T>, Q: Field<T>>(
+    pub(super) fn may_be_negative<V: Lanes<T>, Q: Field<T>, const C: usize>(
         &self,
-        coefficients: &[[V; MOST_COMPONENTS]; NB],
+        coefficients: &Rights<V, NB, C>,
     ) -> [bool; LANES] {
         let mut negative = [false; LANES];
+        let zero = V::splat(T::zero());
         for q in (0..Q::COMPONENTS).filter(|&q| is_density::<T, Q>(q)) {
-            let mut reach = V::splat(T::zero());
+            let mut reach = zero;
             for k in 1..NB {
                 reach = coefficients[k][q].abs().mul_add(V::splat(self.bounds[k]), reach);
             }
-            let beyond = reach
-                .above(coefficients[0][q] * V::splat(may_lose::<T>()))
-                .array();
+            let beyond = reach.above(coefficients[0][q] * V::splat(may_lose::<T>()));
+            let half = V::splat(T::one() / T::lit(2.0));
+            if D == 1 && beyond.are_between(zero - half, half) {
+                continue;
+            }
+            let beyond = beyond.array();
             negative = std::array::from_fn(|l| negative[l] || beyond[l] != T::zero());
         }
         negative
@@ -127,10 +131,10 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
 
     /// Streams polynomials over four cells of the given volume: the number of the point, then the values times the weight.
     #[inline(always)]
-    pub(super) fn emit_lanes<V: Lanes<T>>(
+    pub(super) fn emit_lanes<V: Lanes<T>, const C: usize>(
         &self,
         volume: T,
-        coefficients: &[[V; MOST_COMPONENTS]; NB],
+        coefficients: &Rights<V, NB, C>,
         components: usize,
         sink: &mut impl FnMut(usize, &[V; MOST_COMPONENTS]),
     ) {

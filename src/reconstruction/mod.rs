@@ -11,6 +11,7 @@ mod shepard;
 mod spline;
 mod sub_points;
 mod taylor;
+mod values;
 
 pub use patch::{Cut, Patch};
 pub use relaxed_taylor::{Relaxation, RelaxedTaylor};
@@ -18,6 +19,7 @@ pub use shepard::Shepard;
 pub use spline::CubicSpline;
 pub use sub_points::SubPoints;
 pub use taylor::Taylor;
+pub use values::{Densities, Stored, Values};
 
 use std::ops::Range;
 
@@ -212,12 +214,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
 
     /// Takes in the field that [`Reconstruction::integrate_cells`] or [`Reconstruction::integrate_four`] will stream next, where a
     /// cell's fit wants the values of its neighbours.
-    fn take_in_field<Q: Field<T>>(
-        &mut self,
-        _cloud: &Cloud<'_, T, D>,
-        _value: &(impl Fn(usize) -> Q + Sync),
-    ) {
-    }
+    fn take_in_field<Q: Field<T>>(&mut self, _cloud: &Cloud<'_, T, D>, _value: &(impl Values<T, Q> + Sync)) {}
 
     /// What [`Reconstruction::integrate`] streams in the given `cells`, places in the list of occupied ones. Only asked where
     /// [`Reconstruction::BY_CELLS`].
@@ -255,7 +252,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         _cloud: &Cloud<'_, T, D>,
         _cells: Range<usize>,
         _conserve: bool,
-        _value: &impl Fn(usize) -> Q,
+        _value: &impl Values<T, Q>,
         _sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
     ) -> Four {
         Four::default()

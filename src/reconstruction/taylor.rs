@@ -1,6 +1,7 @@
 //! Taylor least squares.
 
 mod cell_group;
+mod runs;
 #[cfg(test)]
 mod tests;
 mod virtual_points;
@@ -9,18 +10,19 @@ use std::ops::Range;
 
 use nalgebra::SVector;
 
-pub(super) use cell_group::{CellGroup, lanes_of};
+pub(super) use cell_group::{CellGroup, OfValues, Products, Weighted};
+use cell_group::{Conserved, Free};
 use virtual_points::Lent;
 
 use super::gauss::GaussRule;
-use super::{Cloud, Four, Patch, Point, Reconstruction};
+use super::{Cloud, Four, Patch, Point, Reconstruction, Values};
 use crate::field::Field;
 use crate::grid::Cell;
-use crate::lanes::Lanes;
+use crate::lanes::{LANES, Lanes};
 use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
 use crate::taylor::{
-    CellFit, FourSums, Gram, MOST_COMPONENTS, default_tolerance, taylor_functions, taylor_lanes,
+    CellFit, FourSums, Gram, MOST_ALONG_ONE_AXIS, MOST_COMPONENTS, default_tolerance, taylor_functions,
 };
 
 /// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor functions through
@@ -294,6 +296,58 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         let mean = mean(&cell.fits.patch.cell);
         fit_about_mean(cell.fits, cloud, cell.number, value, mean)
     }
+
+    /// [`Reconstruction::integrate_four`] of a field of not more than `C` components.
+    #[inline(always)]
+    fn integrate_few<V: Lanes<T>, Q: Field<T>, const C: usize>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        conserve: bool,
+        value: &impl Values<T, Q>,
+        mut sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+    ) -> Four {
+        let group = CellGroup::new(cloud, cells.clone());
+        let volume = cloud.grid.cell_volume();
+        let first = usize::from(conserve);
+        let mut sums: FourSums<V, NB, C> = if conserve {
+            group.sums::<Conserved, T, V, Q, NB, C>(cloud, cells, value, cloud.volumes)
+        } else {
+            group.sums::<Free, T, V, Q, NB, C>(cloud, cells, value, cloud.volumes)
+        };
+        let mut mean = [V::splat(T::zero()); C];
+        if conserve {
+            let whole = V::splat(T::one() / volume);
+            for q in 0..Q::COMPONENTS {
+                mean[q] = sums.right[0][q] * whole;
+            }
+            sums.take_out(&mean, Q::COMPONENTS);
+        }
+        let mut fits = sums.fit::<T, D>(first, &group.counts, self.tolerance, Q::COMPONENTS);
+        let mut hard = fits.hard;
+        let mut negative = false;
+        if conserve {
+            fits.coefficients[0] = mean;
+            let any = self.rule.may_be_negative::<V, Q, C>(&fits.coefficients);
+            negative = any != [false; LANES];
+            hard = std::array::from_fn(|l| hard[l] || any[l]);
+        }
+        if !cloud.cuts.is_empty() {
+            hard = std::array::from_fn(|l| hard[l] || cloud.is_cut(&group.cells[l]));
+        }
+        self.rule
+            .emit_lanes(volume, &fits.coefficients, Q::COMPONENTS, &mut sink);
+        let mut four = Four::default();
+        // What usually is so, and sooner found out than whether each cell is hard.
+        if D == 1 && fits.are_full && !negative && cloud.cuts.is_empty() {
+            return four;
+        }
+        four.hard[..group.len].copy_from_slice(&hard[..group.len]);
+        for l in 0..group.len {
+            four.reduced += usize::from(!hard[l] && fits.functions[l] + first < NB);
+        }
+        four
+    }
 }
 
 /// Local coordinates in `patch` of the particles of the cell with number `cell`.
@@ -474,48 +528,14 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         cloud: &Cloud<'_, T, D>,
         cells: Range<usize>,
         conserve: bool,
-        value: &impl Fn(usize) -> Q,
-        mut sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+        value: &impl Values<T, Q>,
+        sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
     ) -> Four {
-        let group = CellGroup::new(cloud, cells);
-        let volume = cloud.grid.cell_volume();
-        let first = usize::from(conserve);
-        let mut sums = FourSums::<V, NB>::new();
-        let mut mean = [V::splat(T::zero()); MOST_COMPONENTS];
-        let whole = V::splat(T::one() / volume);
-        for k in 0..group.longest() {
-            let (numbers, weight) = group.points::<T, V>(k);
-            let s = group.local::<T, V>(cloud, &numbers);
-            let values = lanes_of::<T, V, Q>(|l| value(numbers[l]));
-            sums.add(&taylor_lanes::<T, V, D, NB>(&s), weight, &values, Q::COMPONENTS);
-            if conserve {
-                let amount = V::new(std::array::from_fn(|l| cloud.volumes[numbers[l]])) * weight * whole;
-                for q in 0..Q::COMPONENTS {
-                    mean[q] = amount.mul_add(values[q], mean[q]);
-                }
-            }
+        if D == 1 {
+            self.integrate_few::<V, Q, MOST_ALONG_ONE_AXIS>(cloud, cells, conserve, value, sink)
+        } else {
+            self.integrate_few::<V, Q, MOST_COMPONENTS>(cloud, cells, conserve, value, sink)
         }
-        if conserve {
-            sums.take_out(&mean, Q::COMPONENTS);
-        }
-        let mut fits = sums.fit::<T, D>(first, group.counts, self.tolerance, Q::COMPONENTS);
-        let mut hard = fits.hard;
-        if conserve {
-            fits.coefficients[0] = mean;
-            let negative = self.rule.may_be_negative::<V, Q>(&fits.coefficients);
-            hard = std::array::from_fn(|l| hard[l] || negative[l]);
-        }
-        if !cloud.cuts.is_empty() {
-            hard = std::array::from_fn(|l| hard[l] || cloud.is_cut(&group.cells[l]));
-        }
-        self.rule
-            .emit_lanes(volume, &fits.coefficients, Q::COMPONENTS, &mut sink);
-        let mut four = Four::default();
-        four.hard[..group.len].copy_from_slice(&hard[..group.len]);
-        for l in 0..group.len {
-            four.reduced += usize::from(!hard[l] && fits.functions[l] + first < NB);
-        }
-        four
     }
 
     #[cold]

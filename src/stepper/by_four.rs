@@ -9,11 +9,10 @@ use super::lanes::{Bodies, Fits, at_fixed_points};
 use super::matrix::MassMatrix;
 use super::spans::{Spans, share};
 use crate::basis::BasisFamily;
-use crate::field::MassMomentum;
 use crate::grid::Grid;
 use crate::mass::banded_row;
 use crate::parallel::{Windows, add_up, each_span};
-use crate::reconstruction::{Cloud, Reconstruction};
+use crate::reconstruction::{Cloud, Densities, Reconstruction};
 use crate::scalar::Scalar;
 
 /// What is fitted, and where it goes.
@@ -27,13 +26,21 @@ pub(super) struct ByFour<'a, T, const D: usize, B, R> {
     pub(super) dofs: &'a mut Dofs<T, D>,
 }
 
-impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> ByFour<'_, T, D, B, R> {
+impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> ByFour<'a, T, D, B, R> {
+    fn densities(&self) -> Densities<'a, T, D> {
+        Densities {
+            masses: self.masses,
+            velocities: self.velocities,
+            volumes: self.cloud.volumes,
+        }
+    }
+
     /// Momentum, and the row sums of the mass.
     #[inline(never)]
     pub(super) fn lump(self) {
         let (basis, reconstruction, cloud) = (self.basis, self.reconstruction, &self.cloud);
         let grid = cloud.grid;
-        let density = densities(self.masses, self.velocities, cloud.volumes);
+        let density = self.densities();
         let occupied = cloud.bins.occupied();
         let (lumped, momentum) = self.dofs.lumped_mut();
         let Spans {
@@ -74,7 +81,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> B
         let half_band = self.dofs.matrix.band_mut().half_band();
         let (basis, reconstruction, cloud) = (self.basis, self.reconstruction, &self.cloud);
         let grid = cloud.grid;
-        let density = densities(self.masses, self.velocities, cloud.volumes);
+        let density = self.densities();
         let occupied = cloud.bins.occupied();
         let (rows, momentum) = self.dofs.band_mut();
         let Spans {
@@ -116,7 +123,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> B
     /// Momentum, and the mass matrix beyond one dimension.
     #[inline(never)]
     pub(super) fn fill_lattice(self) {
-        let density = densities(self.masses, self.velocities, self.cloud.volumes);
+        let density = self.densities();
         let Dofs { matrix, velocity, .. } = self.dofs;
         matrix.clear();
         velocity.fill(SVector::zeros());
@@ -173,19 +180,4 @@ pub(super) fn add_pairs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
 ) {
     let mut sink = |i: usize, j: usize, mass| matrix.add(i, j, mass);
     at_fixed_points!(B, basis, grid, sum_pairs(bodies, &mut sink));
-}
-
-/// Densities of mass and momentum at each particle.
-fn densities<'a, T: Scalar, const D: usize>(
-    masses: &'a [T],
-    velocities: &'a [SVector<T, D>],
-    volumes: &'a [T],
-) -> impl Fn(usize) -> MassMomentum<T, D> + 'a {
-    move |p| {
-        let density = masses[p] / volumes[p];
-        MassMomentum {
-            mass: density,
-            momentum: velocities[p] * density,
-        }
-    }
 }

@@ -9,7 +9,7 @@ use crate::basis::BasisFamily;
 use crate::grid::Face;
 use crate::law::ConstitutiveLaw;
 use crate::phase::{Drag, Phase};
-use crate::reconstruction::Reconstruction;
+use crate::reconstruction::{Reconstruction, Stored};
 use crate::scalar::Scalar;
 use crate::tensor::symmetric;
 
@@ -178,7 +178,7 @@ where
             spans: &mut self.spans,
             force: &mut self.dofs.force,
         };
-        assembly.internal_force(|p| rates[p]);
+        assembly.internal_force(Stored(&rates));
         self.accelerate(rest);
         self.particles.velocity.fill(SVector::zeros());
         self.update_particle_velocities(-T::one());

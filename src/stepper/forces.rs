@@ -15,7 +15,7 @@ use crate::grid::Grid;
 use crate::law::ConstitutiveLaw;
 use crate::parallel::{PerSpan, Windows, add_up, each_span};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, Point, Reconstruction};
+use crate::reconstruction::{Cloud, Point, Reconstruction, Stored, Values};
 use crate::scalar::Scalar;
 
 /// In one dimension: share of its mass that a DOF's diagonal must hold to be solved for with its neighbours. The share is the mean value of
@@ -135,9 +135,9 @@ where
         // Two closures rather than one with a branch: what a closure holds costs instructions even where it is not used.
         if P::COUPLED {
             let (phase, data) = (&self.phase, &self.particles.phase);
-            assembly.internal_force(|p| phase.total_stress(&effective[p], &data[p]));
+            assembly.internal_force(|p: usize| phase.total_stress(&effective[p], &data[p]));
         } else {
-            assembly.internal_force(stresses(effective));
+            assembly.internal_force(Stored(effective));
         }
         if by_four && !R::KEEPS_FITS {
             let reduced = self.spans.reduced.iter().sum();
@@ -242,13 +242,6 @@ pub(super) fn fill_with_pairs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     pairs.flush(matrix);
 }
 
-/// Stress of each particle. As a function of its own it is one type for all laws, and what calls it is compiled once.
-fn stresses<T: Scalar, const D: usize>(
-    stress: &[SMatrix<T, D, D>],
-) -> impl Fn(usize) -> SMatrix<T, D, D> + Sync + '_ {
-    |p| stress[p]
-}
-
 /// What the internal force is made of.
 pub(super) struct Assembly<'a, 'c, T: Scalar, const D: usize, B, R> {
     /// Four cells at a time.
@@ -262,7 +255,7 @@ pub(super) struct Assembly<'a, 'c, T: Scalar, const D: usize, B, R> {
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> Assembly<'_, '_, T, D, B, R> {
     /// `f_i = -integral(sigma grad phi_i)`, the stress given per particle.
-    pub(super) fn internal_force(self, stress: impl Fn(usize) -> SMatrix<T, D, D> + Sync) {
+    pub(super) fn internal_force(self, stress: impl Values<T, SMatrix<T, D, D>> + Sync) {
         let (basis, cloud) = (self.basis, &self.cloud);
         let add =
             |point: &Point<T, D>, weighted: SMatrix<T, D, D>, force: &mut [SVector<T, D>], first: usize| {
@@ -276,9 +269,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
         if !R::BY_CELLS {
             let force = self.force;
             force.fill(SVector::zeros());
-            return self
-                .reconstruction
-                .integrate(cloud, stress, |point, weighted| add(point, weighted, force, 0));
+            return self.reconstruction.integrate(
+                cloud,
+                |p| stress.at(p),
+                |point, weighted| add(point, weighted, force, 0),
+            );
         }
         self.reconstruction.take_in_field(cloud, &stress);
         let reconstruction = &*self.reconstruction;
@@ -312,9 +307,14 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
                     at_fixed_points!(B, basis, cloud.grid, integrate_stress(fits, &stress, &mut sink));
                 return reduced.set(found);
             }
-            reconstruction.integrate_cells(cloud, place..place + cells.len(), &stress, |point, weighted| {
-                add(point, weighted, force, first);
-            });
+            reconstruction.integrate_cells(
+                cloud,
+                place..place + cells.len(),
+                |p| stress.at(p),
+                |point, weighted| {
+                    add(point, weighted, force, first);
+                },
+            );
         });
         add_up(spans, vectors, self.force, 1);
     }

@@ -14,6 +14,9 @@ use crate::scalar::Scalar;
 /// Most components of a field: a tensor in three dimensions.
 pub const MOST_COMPONENTS: usize = 9;
 
+/// The same along one axis: mass and momentum, or stress and pressure.
+pub(crate) const MOST_ALONG_ONE_AXIS: usize = 2;
+
 /// The Taylor functions, as [`super::taylor_functions`].
 #[inline(always)]
 pub(crate) fn taylor_lanes<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(s: &[V; D]) -> [V; NB] {
@@ -38,13 +41,14 @@ pub(crate) fn taylor_lanes<T: Scalar, V: Lanes<T>, const D: usize, const NB: usi
 
 /// Sums over the points of four cells: of products of the functions, and of functions times the components of a field.
 #[derive(Clone, Copy)]
-pub(crate) struct FourSums<V, const NB: usize> {
-    gram: [[V; NB]; NB],
-    right: Rights<V, NB>,
+pub(crate) struct FourSums<V, const NB: usize, const C: usize = MOST_COMPONENTS> {
+    /// The lower half.
+    pub(crate) gram: Products<V, NB>,
+    pub(crate) right: Rights<V, NB, C>,
 }
 
 /// Of each function, sums over points or coefficients, component by component.
-pub(crate) type Rights<V, const NB: usize> = [[V; MOST_COMPONENTS]; NB];
+pub(crate) type Rights<V, const NB: usize, const C: usize = MOST_COMPONENTS> = [[V; C]; NB];
 
 /// Products of two functions, the lower half.
 pub(crate) type Products<V, const NB: usize> = [[V; NB]; NB];
@@ -59,18 +63,22 @@ pub(crate) struct Factored<V, const NB: usize> {
     pub(crate) hard: [bool; LANES],
     /// Number of functions.
     pub(crate) functions: [usize; LANES],
+    /// Whether all cells clearly have all functions; not always told.
+    pub(crate) are_full: bool,
 }
 
 /// What became of four fits.
-pub(crate) struct FourFits<V, const NB: usize> {
+pub(crate) struct FourFits<V, const NB: usize, const C: usize> {
     /// Coefficients of each function.
-    pub(crate) coefficients: Rights<V, NB>,
+    pub(crate) coefficients: Rights<V, NB, C>,
     pub(crate) hard: [bool; LANES],
     /// Number of functions.
     pub(crate) functions: [usize; LANES],
+    /// Whether all cells clearly have all functions; not always told.
+    pub(crate) are_full: bool,
 }
 
-impl<V: Copy, const NB: usize> FourSums<V, NB> {
+impl<V: Copy, const NB: usize, const C: usize> FourSums<V, NB, C> {
     #[inline(always)]
     pub(crate) fn new<T: Scalar>() -> Self
     where
@@ -79,19 +87,14 @@ impl<V: Copy, const NB: usize> FourSums<V, NB> {
         let zero = V::splat(T::zero());
         Self {
             gram: [[zero; NB]; NB],
-            right: [[zero; MOST_COMPONENTS]; NB],
+            right: [[zero; C]; NB],
         }
     }
 
-    /// Adds a point of each cell with weight one, or zero where a cell has no further point.
+    /// Adds the products of a point of each cell with its weight, zero where a cell has no further point.
     #[inline(always)]
-    pub(crate) fn add<T: Scalar>(
-        &mut self,
-        psi: &[V; NB],
-        weight: V,
-        values: &[V; MOST_COMPONENTS],
-        components: usize,
-    ) where
+    pub(crate) fn add_products<T: Scalar>(&mut self, psi: &[V; NB], weight: V)
+    where
         V: Lanes<T>,
     {
         for i in 0..NB {
@@ -99,34 +102,32 @@ impl<V: Copy, const NB: usize> FourSums<V, NB> {
             for j in 0..=i {
                 self.gram[i][j] = weighted.mul_add(psi[j], self.gram[i][j]);
             }
+        }
+    }
+
+    /// Adds the functions times the components of a field; `first` is the weight with the first function, which is one.
+    #[inline(always)]
+    pub(crate) fn add_values<T: Scalar>(
+        &mut self,
+        psi: &[V; NB],
+        weight: V,
+        first: V,
+        values: &[V; C],
+        components: usize,
+    ) where
+        V: Lanes<T>,
+    {
+        for i in 0..NB {
+            let weighted = if i == 0 { first } else { psi[i] * weight };
             for q in 0..components {
                 self.right[i][q] = weighted.mul_add(values[q], self.right[i][q]);
             }
         }
     }
 
-    /// The same without the sums of products.
-    #[inline(always)]
-    pub(crate) fn add_values<T: Scalar>(
-        &mut self,
-        psi: &[V; NB],
-        weight: V,
-        values: &[V; MOST_COMPONENTS],
-        components: usize,
-    ) where
-        V: Lanes<T>,
-    {
-        for q in 0..components {
-            let value = values[q] * weight;
-            for i in 0..NB {
-                self.right[i][q] = value.mul_add(psi[i], self.right[i][q]);
-            }
-        }
-    }
-
     /// Takes a mean, known of each component, out of the sums.
     #[inline(always)]
-    pub(crate) fn take_out<T: Scalar>(&mut self, mean: &[V; MOST_COMPONENTS], components: usize)
+    pub(crate) fn take_out<T: Scalar>(&mut self, mean: &[V; C], components: usize)
     where
         V: Lanes<T>,
     {
@@ -142,10 +143,10 @@ impl<V: Copy, const NB: usize> FourSums<V, NB> {
     pub(crate) fn fit<T: Scalar, const D: usize>(
         &self,
         first: usize,
-        counts: [usize; LANES],
+        counts: &[usize; LANES],
         tolerance: T,
         components: usize,
-    ) -> FourFits<V, NB>
+    ) -> FourFits<V, NB, C>
     where
         V: Lanes<T>,
     {
@@ -154,8 +155,9 @@ impl<V: Copy, const NB: usize> FourSums<V, NB> {
             factor,
             hard,
             functions,
+            are_full,
         } = factorise::<T, V, D, NB>(&self.gram, first, counts, tolerance);
-        let mut coefficients = [[zero; MOST_COMPONENTS]; NB];
+        let mut coefficients = [[zero; C]; NB];
         for q in 0..components {
             factor.solve(first, q, &self.right, &mut coefficients);
         }
@@ -163,19 +165,8 @@ impl<V: Copy, const NB: usize> FourSums<V, NB> {
             coefficients,
             hard,
             functions,
+            are_full,
         }
-    }
-
-    /// Sums of products of the functions.
-    #[inline(always)]
-    pub(crate) fn gram(&self) -> &Products<V, NB> {
-        &self.gram
-    }
-
-    /// Sums of functions times components.
-    #[inline(always)]
-    pub(crate) fn right(&self) -> &Rights<V, NB> {
-        &self.right
     }
 }
 
@@ -184,7 +175,75 @@ impl<V: Copy, const NB: usize> FourSums<V, NB> {
 pub(crate) fn factorise<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
     gram: &Products<V, NB>,
     first: usize,
-    counts: [usize; LANES],
+    counts: &[usize; LANES],
+    tolerance: T,
+) -> Factored<V, NB> {
+    if D > 1 {
+        return factorise_any::<T, V, D, NB>(gram, first, counts, tolerance);
+    }
+    match factorise_full::<T, V, D, NB>(gram, first, counts, tolerance) {
+        Some(factor) => Factored {
+            factor,
+            hard: [false; LANES],
+            functions: [NB - first; LANES],
+            are_full: true,
+        },
+        None => factorise_apart::<T, V, D, NB>(gram, first, counts, tolerance),
+    }
+}
+
+/// The same where all points clearly see all functions: the same operations without what then changes nothing.
+#[inline(always)]
+fn factorise_full<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
+    gram: &Products<V, NB>,
+    first: usize,
+    counts: &[usize; LANES],
+    tolerance: T,
+) -> Option<Factor<V, NB>> {
+    let (zero, one) = (V::splat(T::zero()), V::splat(T::one()));
+    let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
+    let share = V::splat(T::lit(GRAM_SHARE));
+    let mut l = [[zero; NB]; NB];
+    let mut full = one;
+    for k in first..NB {
+        let mut left = gram[k][k];
+        let mut row = [zero; NB];
+        for j in first..k {
+            let mut dot = gram[k][j];
+            for i in first..j {
+                dot = dot - l[j][i] * row[i];
+            }
+            row[j] = dot;
+            l[k][j] = dot * l[j][j];
+            left = left - l[k][j] * dot;
+        }
+        let least = gram[0][0] * V::splat(tolerance * tolerance * sizes[k] * sizes[k]);
+        full = full * left.above(least) * left.above(gram[k][k] * share);
+        l[k][k] = one / left;
+    }
+    let are_enough = counts.iter().all(|&count| count >= NB);
+    let (half, two) = (V::splat(T::one() / T::lit(2.0)), V::splat(T::lit(2.0)));
+    (are_enough && full.are_between(half, two)).then_some(Factor(l))
+}
+
+/// [`factorise_any`], out of the way of the code that usually runs.
+#[cold]
+#[inline(never)]
+fn factorise_apart<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
+    gram: &Products<V, NB>,
+    first: usize,
+    counts: &[usize; LANES],
+    tolerance: T,
+) -> Factored<V, NB> {
+    factorise_any::<T, V, D, NB>(gram, first, counts, tolerance)
+}
+
+/// The same whatever the points see.
+#[inline(always)]
+fn factorise_any<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
+    gram: &Products<V, NB>,
+    first: usize,
+    counts: &[usize; LANES],
     tolerance: T,
 ) -> Factored<V, NB> {
     let (zero, one) = (V::splat(T::zero()), V::splat(T::one()));
@@ -223,18 +282,19 @@ pub(crate) fn factorise<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>
         factor: Factor(l),
         hard: std::array::from_fn(|l| doubt[l] != T::zero()),
         functions: std::array::from_fn(|l| functions[l].primal() as usize),
+        are_full: false,
     }
 }
 
 impl<V: Copy, const NB: usize> Factor<V, NB> {
     /// Coefficients of component `q` from its sums.
     #[inline(always)]
-    pub(crate) fn solve<T: Scalar>(
+    pub(crate) fn solve<T: Scalar, const C: usize>(
         &self,
         first: usize,
         q: usize,
-        right: &Rights<V, NB>,
-        coefficients: &mut Rights<V, NB>,
+        right: &Rights<V, NB, C>,
+        coefficients: &mut Rights<V, NB, C>,
     ) where
         V: Lanes<T>,
     {

@@ -4,12 +4,10 @@ use std::ops::Range;
 
 use super::filling::OpenSides;
 use crate::lanes::{LANES, Lanes};
-use crate::reconstruction::Cloud;
-use crate::reconstruction::taylor::{CellGroup, lanes_of};
+use crate::reconstruction::taylor::{self, CellGroup, OfValues, Weighted};
+use crate::reconstruction::{Cloud, Values};
 use crate::scalar::Scalar;
-use crate::taylor::{
-    Factor, FourSums, MOST_COMPONENTS, Products, Rights, factorise, shift_lanes, taylor_lanes,
-};
+use crate::taylor::{Factor, FourSums, Products, Rights, factorise, shift_lanes};
 
 /// In place of a neighbour that there is not.
 pub(super) const NONE: u32 = u32::MAX;
@@ -79,45 +77,31 @@ pub(super) fn keep_gram<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>
     places: Range<usize>,
     kept: &mut KeptProducts<T, NB>,
 ) {
-    let group = CellGroup::new(cloud, places);
-    let mut sums = FourSums::<V, NB>::new();
-    let nothing = [V::splat(T::zero()); MOST_COMPONENTS];
-    for k in 0..group.longest() {
-        let (numbers, weight) = group.points::<T, V>(k);
-        let s = group.local::<T, V>(cloud, &numbers);
-        sums.add(&taylor_lanes::<T, V, D, NB>(&s), weight, &nothing, 0);
-    }
-    keep::<T, V, NB>(sums.gram(), kept);
+    let nothing = |_: usize| T::zero();
+    let group = CellGroup::new(cloud, places.clone());
+    let sums = group.sums::<taylor::Products, T, V, T, NB, 1>(cloud, places, &nothing, cloud.volumes);
+    keep::<T, V, NB>(&sums.gram, kept);
 }
 
 /// Sums over the own particles of each of the cells of functions times the components of `value`, and, if there are `weights`,
 /// of products too, so weighted.
 #[inline(always)]
-pub(super) fn sums<T, V, Q, const D: usize, const NB: usize>(
+pub(super) fn sums<T, V, Q, const D: usize, const NB: usize, const C: usize>(
     cloud: &Cloud<'_, T, D>,
     places: Range<usize>,
     weights: Option<&[T]>,
-    value: &impl Fn(usize) -> Q,
-) -> (FourSums<V, NB>, [usize; LANES])
+    value: &impl Values<T, Q>,
+) -> (FourSums<V, NB, C>, [usize; LANES])
 where
     T: Scalar,
     V: Lanes<T>,
     Q: crate::field::Field<T>,
 {
-    let group = CellGroup::new(cloud, places);
-    let mut sums = FourSums::<V, NB>::new();
-    for k in 0..group.longest() {
-        let (numbers, mut weight) = group.points::<T, V>(k);
-        let s = group.local::<T, V>(cloud, &numbers);
-        let values = lanes_of::<T, V, Q>(|l| value(numbers[l]));
-        let psi = taylor_lanes::<T, V, D, NB>(&s);
-        if let Some(weights) = weights {
-            weight = weight * V::new(std::array::from_fn(|l| weights[numbers[l]]));
-            sums.add(&psi, weight, &values, Q::COMPONENTS);
-        } else {
-            sums.add_values(&psi, weight, &values, Q::COMPONENTS);
-        }
-    }
+    let group = CellGroup::new(cloud, places.clone());
+    let sums = match weights {
+        Some(weights) => group.sums::<Weighted, T, V, Q, NB, C>(cloud, places, value, weights),
+        None => group.sums::<OfValues, T, V, Q, NB, C>(cloud, places, value, cloud.volumes),
+    };
     (sums, group.counts)
 }
 
@@ -161,10 +145,10 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
         }
         let gram = load::<T, V, NB>(&grams[places.start / LANES]);
         let own_counts = counts::<T, V>(gram[0][0]);
-        let own = factorise::<T, V, D, NB>(&gram, 0, own_counts, tolerance);
+        let own = factorise::<T, V, D, NB>(&gram, 0, &own_counts, tolerance);
         let all = with_neighbours::<T, V, D, NB>(gram, neighbours, grams);
         let all_counts = counts::<T, V>(all[0][0]);
-        let wide = factorise::<T, V, D, NB>(&all, 0, all_counts, tolerance);
+        let wide = factorise::<T, V, D, NB>(&all, 0, &all_counts, tolerance);
         keep::<T, V, NB>(&own.factor.0, &mut self.own);
         keep::<T, V, NB>(&wide.factor.0, &mut self.wide);
         for l in 0..LANES {
@@ -177,15 +161,15 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
     /// Coefficients of what is integrated, from the own sums: the own fit, and where that has not all functions the wide one with,
     /// on top of it, what the own particles see beside that.
     #[inline(always)]
-    pub(super) fn integrated<V: Lanes<T>>(
+    pub(super) fn integrated<V: Lanes<T>, const C: usize>(
         &self,
         group: usize,
         gram: &KeptProducts<T, NB>,
         sums: &KeptSums<'_, T>,
-    ) -> Rights<V, NB> {
+    ) -> Rights<V, NB, C> {
         let wants_wide: [bool; LANES] = std::array::from_fn(|l| !self.own_is_full[l] && self.wide_is_full[l]);
         if !wants_wide.contains(&true) {
-            return self.own_coefficients(&sums.load::<V, NB>(group), sums.components);
+            return self.own_coefficients(&sums.load::<V, NB, C>(group), sums.components);
         }
         let mut seen = self.wide_coefficients(group, sums);
         let mask = mask::<T, V>(wants_wide);
@@ -194,7 +178,7 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
                 seen[k][q] = seen[k][q] * mask;
             }
         }
-        let rest = self.rest::<V>(group, gram, sums, &seen);
+        let rest = self.rest::<V, C>(group, gram, sums, &seen);
         for k in 0..NB {
             for q in 0..sums.components {
                 seen[k][q] = seen[k][q] + rest[k][q];
@@ -205,14 +189,14 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
 
     /// Coefficients of the own fits of what polynomials leave of the values.
     #[inline(always)]
-    fn rest<V: Lanes<T>>(
+    fn rest<V: Lanes<T>, const C: usize>(
         &self,
         group: usize,
         gram: &KeptProducts<T, NB>,
         sums: &KeptSums<'_, T>,
-        seen: &Rights<V, NB>,
-    ) -> Rights<V, NB> {
-        let mut right = sums.load::<V, NB>(group);
+        seen: &Rights<V, NB, C>,
+    ) -> Rights<V, NB, C> {
+        let mut right = sums.load::<V, NB, C>(group);
         let gram = load::<T, V, NB>(gram);
         for i in 0..NB {
             for j in 0..NB {
@@ -228,14 +212,14 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
     /// Adds to the wide fits the constants with which their slopes leave the means of the cells' fits alone, wherever in the
     /// cell its particles are: a slope that changes turns about the middle of the cell, and not of the particles.
     #[inline(always)]
-    pub(super) fn turn_about_the_middle<V: Lanes<T>>(
+    pub(super) fn turn_about_the_middle<V: Lanes<T>, const C: usize>(
         &self,
         group: usize,
         gram: &KeptProducts<T, NB>,
         sums: &KeptSums<'_, T>,
-        wide: &mut Rights<V, NB>,
+        wide: &mut Rights<V, NB, C>,
     ) {
-        let rest = self.rest::<V>(group, gram, sums, wide);
+        let rest = self.rest::<V, C>(group, gram, sums, wide);
         for k in 1..=D {
             let middle = V::new(std::array::from_fn(|l| middle(gram[k][0][l], gram[0][0][l])));
             for q in 0..sums.components {
@@ -246,30 +230,30 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
 
     /// Coefficients of the own fits from their sums.
     #[inline(always)]
-    pub(super) fn own_coefficients<V: Lanes<T>>(
+    pub(super) fn own_coefficients<V: Lanes<T>, const C: usize>(
         &self,
-        right: &Rights<V, NB>,
+        right: &Rights<V, NB, C>,
         components: usize,
-    ) -> Rights<V, NB> {
+    ) -> Rights<V, NB, C> {
         solve(&self.own, right, components)
     }
 
     /// Coefficients of the wide fits; zero where they have not all functions.
     #[inline(always)]
-    pub(super) fn wide_coefficients<V: Lanes<T>>(
+    pub(super) fn wide_coefficients<V: Lanes<T>, const C: usize>(
         &self,
         group: usize,
         sums: &KeptSums<'_, T>,
-    ) -> Rights<V, NB> {
-        let mut right = sums.load::<V, NB>(group);
+    ) -> Rights<V, NB, C> {
+        let mut right = sums.load::<V, NB, C>(group);
         for axis in 0..D {
             for (side, places) in self.neighbours[axis].iter().enumerate() {
                 let there: [bool; LANES] = std::array::from_fn(|l| places[l] != NONE);
                 if !there.contains(&true) {
                     continue;
                 }
-                let mut theirs = sums.load_at::<V, NB>(places);
-                shift_lanes::<T, V, D, NB, MOST_COMPONENTS>(&mut theirs, sums.components, axis, side > 0);
+                let mut theirs = sums.load_at::<V, NB, C>(places);
+                shift_lanes::<T, V, D, NB, C>(&mut theirs, sums.components, axis, side > 0);
                 let mask = mask::<T, V>(there);
                 for k in 0..NB {
                     for q in 0..sums.components {
@@ -301,13 +285,13 @@ pub(super) fn middle<T: Scalar>(sum: T, count: T) -> T {
 }
 
 #[inline(always)]
-fn solve<T: Scalar, V: Lanes<T>, const NB: usize>(
+fn solve<T: Scalar, V: Lanes<T>, const NB: usize, const C: usize>(
     factor: &KeptProducts<T, NB>,
-    right: &Rights<V, NB>,
+    right: &Rights<V, NB, C>,
     components: usize,
-) -> Rights<V, NB> {
+) -> Rights<V, NB, C> {
     let factor = Factor(load::<T, V, NB>(factor));
-    let mut coefficients = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+    let mut coefficients = [[V::splat(T::zero()); C]; NB];
     for q in 0..components {
         factor.solve(0, q, right, &mut coefficients);
     }
@@ -362,8 +346,11 @@ pub(super) struct KeptSums<'a, T> {
 impl<T: Scalar> KeptSums<'_, T> {
     /// Of four cells.
     #[inline(always)]
-    pub(super) fn load<V: Lanes<T>, const NB: usize>(&self, group: usize) -> Rights<V, NB> {
-        let mut rights = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+    pub(super) fn load<V: Lanes<T>, const NB: usize, const C: usize>(
+        &self,
+        group: usize,
+    ) -> Rights<V, NB, C> {
+        let mut rights = [[V::splat(T::zero()); C]; NB];
         let first = group * NB * self.components;
         let values = &self.values[first..first + NB * self.components];
         for k in 0..NB {
@@ -376,8 +363,11 @@ impl<T: Scalar> KeptSums<'_, T> {
 
     /// Of the cells at four places, any where there is none.
     #[inline(always)]
-    fn load_at<V: Lanes<T>, const NB: usize>(&self, places: &[u32; LANES]) -> Rights<V, NB> {
-        let mut rights = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+    fn load_at<V: Lanes<T>, const NB: usize, const C: usize>(
+        &self,
+        places: &[u32; LANES],
+    ) -> Rights<V, NB, C> {
+        let mut rights = [[V::splat(T::zero()); C]; NB];
         let each = NB * self.components;
         let at: [usize; LANES] =
             std::array::from_fn(|l| if places[l] == NONE { 0 } else { places[l] as usize });
@@ -410,8 +400,8 @@ impl<T: Scalar> KeptSums<'_, T> {
 
 /// Puts the sums of four cells where they are kept.
 #[inline(always)]
-pub(super) fn keep_sums<T: Scalar, V: Lanes<T>, const NB: usize>(
-    rights: &Rights<V, NB>,
+pub(super) fn keep_sums<T: Scalar, V: Lanes<T>, const NB: usize, const C: usize>(
+    rights: &Rights<V, NB, C>,
     components: usize,
     kept: &mut [[T; LANES]],
 ) {

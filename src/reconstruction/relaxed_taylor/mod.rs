@@ -14,13 +14,13 @@ mod tests;
 use std::ops::Range;
 
 use super::gauss::GaussRule;
-use super::{Cloud, Crossed, Filling, Four, Point, Reconstruction, Shepard};
+use super::{Cloud, Crossed, Filling, Four, Point, Reconstruction, Shepard, Stored, Values};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::CELLS;
 use crate::scalar::Scalar;
-use crate::taylor::{MOST_COMPONENTS, default_tolerance};
+use crate::taylor::{MOST_ALONG_ONE_AXIS, MOST_COMPONENTS, default_tolerance};
 use cells::{Kind, RelaxedCell};
 use four::{FourFits, KeptProducts};
 use pull::Pulls;
@@ -173,7 +173,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     ) {
         // Not what a step calls: that streams cells, and allocates nothing.
         let values: Vec<Q> = (0..cloud.positions.len()).map(value).collect();
-        self.take_in_field(cloud, &|p| values[p]);
+        self.take_in_field(cloud, &Stored(&values));
         self.integrate_cells(cloud, 0..self.cells.len(), |p| values[p], sink);
     }
 
@@ -184,7 +184,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         }
     }
 
-    fn take_in_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Fn(usize) -> Q + Sync)) {
+    fn take_in_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Values<T, Q> + Sync)) {
         self.sum_field(cloud, value);
     }
 
@@ -219,13 +219,19 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         cloud: &Cloud<'_, T, D>,
         cells: Range<usize>,
         _conserve: bool,
-        _value: &impl Fn(usize) -> Q,
+        _value: &impl Values<T, Q>,
         mut sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
     ) -> Four {
-        let coefficients = self.integrated::<V, Q>(cells.start / LANES);
-        let volume = cloud.grid.cell_volume();
-        self.rule
-            .emit_lanes(volume, &coefficients, Q::COMPONENTS, &mut sink);
+        let (group, volume) = (cells.start / LANES, cloud.grid.cell_volume());
+        if D == 1 {
+            let coefficients = self.integrated::<V, Q, MOST_ALONG_ONE_AXIS>(group);
+            self.rule
+                .emit_lanes(volume, &coefficients, Q::COMPONENTS, &mut sink);
+        } else {
+            let coefficients = self.integrated::<V, Q, MOST_COMPONENTS>(group);
+            self.rule
+                .emit_lanes(volume, &coefficients, Q::COMPONENTS, &mut sink);
+        }
         let mut four = Four::default();
         for (hard, cell) in four.hard.iter_mut().zip(&self.cells[cells]) {
             *hard = cell.kind != Kind::Four;

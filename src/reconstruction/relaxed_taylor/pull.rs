@@ -180,8 +180,8 @@ impl<'a, T> PullRows<'a, T> {
 
 /// Puts the coefficients of four cells, `shares` of which are positive, where they are kept.
 #[inline(always)]
-pub(super) fn keep_pulls<T: Scalar, V: Lanes<T>, const NB: usize>(
-    rights: &Rights<V, NB>,
+pub(super) fn keep_pulls<T: Scalar, V: Lanes<T>, const NB: usize, const C: usize>(
+    rights: &Rights<V, NB, C>,
     components: usize,
     shares: [T; LANES],
     (coefficients, kept_shares): (&mut [T], &mut [T]),

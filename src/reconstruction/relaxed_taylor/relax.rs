@@ -9,9 +9,9 @@ use crate::field::Field;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::each_span;
 use crate::reconstruction::taylor::local;
-use crate::reconstruction::{Cloud, Crossed, Patch, Reconstruction};
+use crate::reconstruction::{Cloud, Crossed, Patch, Reconstruction, Stored};
 use crate::scalar::Scalar;
-use crate::taylor::{CellFit, MOST_COMPONENTS, Rights, factorise};
+use crate::taylor::{CellFit, MOST_ALONG_ONE_AXIS, MOST_COMPONENTS, Rights, factorise};
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     /// Moves the values towards the fits of their own cell and through its neighbours.
@@ -22,11 +22,15 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         values: &mut [Q],
     ) {
         let taken: &[Q] = values;
-        self.take_in_field(cloud, &|p| taken[p]);
+        self.take_in_field(cloud, &Stored(taken));
         let mut pulls = std::mem::replace(&mut self.pulls, Pulls::none());
         let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
-            with_lanes_of!(T, self.pull_to_both_in[Q](crossed, first, rows));
+            if D == 1 {
+                with_lanes_of!(T, self.pull_to_both_in[Q, MOST_ALONG_ONE_AXIS](crossed, first, rows));
+            } else {
+                with_lanes_of!(T, self.pull_to_both_in[Q, MOST_COMPONENTS](crossed, first, rows));
+            }
         });
         pulls.apply::<Q, D, NB>(cloud, values);
         for place in 0..self.cells.len() {
@@ -38,7 +42,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     }
 
     #[inline(never)]
-    fn pull_to_both_in<V: Lanes<T>, Q: Field<T>>(
+    fn pull_to_both_in<V: Lanes<T>, Q: Field<T>, const C: usize>(
         &self,
         crossed: &[Crossed<T>],
         first: usize,
@@ -58,12 +62,12 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                     }
                 }
             }
-            let seen = fits.own_coefficients(&sums.load::<V, NB>(group), Q::COMPONENTS);
-            let mut wide = fits.wide_coefficients::<V>(group, &sums);
+            let seen = fits.own_coefficients(&sums.load::<V, NB, C>(group), Q::COMPONENTS);
+            let mut wide = fits.wide_coefficients::<V, C>(group, &sums);
             if self.keeps_means {
-                fits.turn_about_the_middle::<V>(group, &self.grams[group], &sums, &mut wide);
+                fits.turn_about_the_middle::<V, C>(group, &self.grams[group], &sums, &mut wide);
             }
-            let mut pull: Rights<V, NB> = [[zero; MOST_COMPONENTS]; NB];
+            let mut pull: Rights<V, NB, C> = [[zero; C]; NB];
             let shares = [V::new(own), V::new(neighbours)];
             for k in 0..NB {
                 for q in 0..Q::COMPONENTS {
@@ -71,7 +75,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                 }
             }
             let shares = (shares[0] + shares[1]).array();
-            keep_pulls::<T, V, NB>(&pull, Q::COMPONENTS, shares, row);
+            keep_pulls::<T, V, NB, C>(&pull, Q::COMPONENTS, shares, row);
         }
     }
 
@@ -134,10 +138,17 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let mut pulls = std::mem::replace(&mut self.pulls, Pulls::none());
         let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
-            with_lanes_of!(
-                T,
-                self.pull_to_own_in[Q](cloud, weights, crossed, first, rows, taken)
-            );
+            if D == 1 {
+                with_lanes_of!(
+                    T,
+                    self.pull_to_own_in[Q, MOST_ALONG_ONE_AXIS](cloud, weights, crossed, first, rows, taken)
+                );
+            } else {
+                with_lanes_of!(
+                    T,
+                    self.pull_to_own_in[Q, MOST_COMPONENTS](cloud, weights, crossed, first, rows, taken)
+                );
+            }
         });
         pulls.apply::<Q, D, NB>(cloud, values);
         for (place, cell) in self.cells.iter().enumerate() {
@@ -149,7 +160,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     }
 
     #[inline(never)]
-    fn pull_to_own_in<V: Lanes<T>, Q: Field<T>>(
+    fn pull_to_own_in<V: Lanes<T>, Q: Field<T>, const C: usize>(
         &self,
         cloud: &Cloud<'_, T, D>,
         weights: &[T],
@@ -160,18 +171,19 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     ) {
         for (k, row) in rows.groups().enumerate() {
             let places = self.places(first + k);
-            let (sums, counts) = sums::<T, V, Q, D, NB>(cloud, places.clone(), Some(weights), &|p| values[p]);
-            let fits = factorise::<T, V, D, NB>(sums.gram(), 0, counts, self.tolerance);
+            let (sums, counts) =
+                sums::<T, V, Q, D, NB, C>(cloud, places.clone(), Some(weights), &Stored(values));
+            let fits = factorise::<T, V, D, NB>(&sums.gram, 0, &counts, self.tolerance);
             let mut shares = [T::zero(); LANES];
             for (l, place) in places.enumerate() {
                 if self.cells[place].kind == Kind::Four {
                     [shares[l], _] = self.relaxation.shares(crossed[place]);
                 }
             }
-            let mut pull: Rights<V, NB> = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+            let mut pull: Rights<V, NB, C> = [[V::splat(T::zero()); C]; NB];
             let share = V::new(shares);
             for q in 0..Q::COMPONENTS {
-                fits.factor.solve(0, q, sums.right(), &mut pull);
+                fits.factor.solve(0, q, &sums.right, &mut pull);
                 for function in &mut pull {
                     function[q] = function[q] * share;
                 }
@@ -181,7 +193,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                     shares[l] = Pulls::left();
                 }
             }
-            keep_pulls::<T, V, NB>(&pull, Q::COMPONENTS, shares, row);
+            keep_pulls::<T, V, NB, C>(&pull, Q::COMPONENTS, shares, row);
         }
     }
 

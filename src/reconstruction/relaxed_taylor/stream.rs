@@ -10,16 +10,16 @@ use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::{Rows, each_span};
 use crate::reconstruction::gauss::polynomial;
 use crate::reconstruction::taylor::local;
-use crate::reconstruction::{Cloud, Patch, Point};
+use crate::reconstruction::{Cloud, Patch, Point, Values};
 use crate::scalar::Scalar;
-use crate::taylor::{MOST_COMPONENTS, Rights, taylor_functions};
+use crate::taylor::{MOST_ALONG_ONE_AXIS, MOST_COMPONENTS, Rights, taylor_functions};
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     /// Sums the functions times a field over the particles of each cell.
     pub(super) fn sum_field<Q: Field<T>>(
         &mut self,
         cloud: &Cloud<'_, T, D>,
-        value: &(impl Fn(usize) -> Q + Sync),
+        value: &(impl Values<T, Q> + Sync),
     ) {
         let mut kept = std::mem::take(&mut self.sums);
         kept.clear();
@@ -29,13 +29,17 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             width: NB * Q::COMPONENTS,
         };
         each_span(self.share_groups(), super::GROUPS, work, &|first, kept| {
-            with_lanes_of!(T, self.sums_in[Q, _](cloud, first, value, kept.values));
+            if D == 1 {
+                with_lanes_of!(T, self.sums_in[Q, _, MOST_ALONG_ONE_AXIS](cloud, first, value, kept.values));
+            } else {
+                with_lanes_of!(T, self.sums_in[Q, _, MOST_COMPONENTS](cloud, first, value, kept.values));
+            }
         });
         self.sums = kept;
     }
 
     #[inline(never)]
-    fn sums_in<V: Lanes<T>, Q: Field<T>, F: Fn(usize) -> Q>(
+    fn sums_in<V: Lanes<T>, Q: Field<T>, F: Values<T, Q>, const C: usize>(
         &self,
         cloud: &Cloud<'_, T, D>,
         first: usize,
@@ -44,8 +48,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     ) {
         for (k, kept) in kept.chunks_exact_mut(NB * Q::COMPONENTS).enumerate() {
             let places = self.places(first + k);
-            let (sums, _) = sums::<T, V, Q, D, NB>(cloud, places, None, value);
-            keep_sums::<T, V, NB>(sums.right(), Q::COMPONENTS, kept);
+            let (sums, _) = sums::<T, V, Q, D, NB, C>(cloud, places, None, value);
+            keep_sums::<T, V, NB, C>(&sums.right, Q::COMPONENTS, kept);
         }
     }
 
@@ -59,7 +63,10 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
 
     /// Coefficients of what is integrated in four cells.
     #[inline(always)]
-    pub(super) fn integrated<V: Lanes<T>, Q: Field<T>>(&self, group: usize) -> Rights<V, NB> {
+    pub(super) fn integrated<V: Lanes<T>, Q: Field<T>, const C: usize>(
+        &self,
+        group: usize,
+    ) -> Rights<V, NB, C> {
         let sums = self.kept_sums::<Q>();
         self.fits[group].integrated(group, &self.grams[group], &sums)
     }
@@ -82,7 +89,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             }
             if at_hand != Some(place / LANES) {
                 at_hand = Some(place / LANES);
-                coefficients = self.integrated::<V, Q>(place / LANES);
+                coefficients = self.integrated::<V, Q, MOST_COMPONENTS>(place / LANES);
             }
             let of_cell = std::array::from_fn(|k| {
                 let mut coefficient = Q::zero();

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
+use super::runs::{Run, sums_of_runs};
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::lanes::{LANES, Lanes};
-use crate::reconstruction::Cloud;
+use crate::reconstruction::values::lanes_of;
+use crate::reconstruction::{Cloud, Values};
 use crate::scalar::Scalar;
-use crate::taylor::MOST_COMPONENTS;
+use crate::taylor::{FourSums, taylor_lanes};
 
 /// Up to four occupied cells with their particles; spare lanes repeat the last cell.
 pub(in super::super) struct CellGroup<'a, const D: usize> {
@@ -15,6 +17,51 @@ pub(in super::super) struct CellGroup<'a, const D: usize> {
     pub(in super::super) cells: [Cell<D>; LANES],
     particles: [&'a [u32]; LANES],
     pub(in super::super) counts: [usize; LANES],
+}
+
+/// What is summed over particles.
+pub(in super::super) trait Sought {
+    /// Products of two functions.
+    const PRODUCTS: bool = true;
+    /// Functions times the components of a field.
+    const VALUES: bool = true;
+    /// Whether all is weighted with the particles' amounts.
+    const WEIGHTED: bool = false;
+    /// Whether the components alone are, which is their product with the first function.
+    const CONSERVED: bool = false;
+}
+
+/// Sums of a free fit.
+pub(in super::super) struct Free;
+
+impl Sought for Free {}
+
+/// Sums of a fit that keeps the integrals of densities, given the volumes.
+pub(in super::super) struct Conserved;
+
+impl Sought for Conserved {
+    const CONSERVED: bool = true;
+}
+
+/// Sums of a weighted fit.
+pub(in super::super) struct Weighted;
+
+impl Sought for Weighted {
+    const WEIGHTED: bool = true;
+}
+
+/// What a fit is made of before there is a field.
+pub(in super::super) struct Products;
+
+impl Sought for Products {
+    const VALUES: bool = false;
+}
+
+/// What a field adds to that.
+pub(in super::super) struct OfValues;
+
+impl Sought for OfValues {
+    const PRODUCTS: bool = false;
 }
 
 impl<'a, const D: usize> CellGroup<'a, D> {
@@ -32,13 +79,79 @@ impl<'a, const D: usize> CellGroup<'a, D> {
     }
 
     /// Most particles of a cell.
-    pub(in super::super) fn longest(&self) -> usize {
+    fn longest(&self) -> usize {
         self.counts.iter().copied().max().unwrap_or(0)
+    }
+
+    /// Sums over the particles of each cell, which are those at `places`.
+    #[inline(always)]
+    pub(in super::super) fn sums<
+        S: Sought,
+        T: Scalar,
+        V: Lanes<T>,
+        Q: Field<T>,
+        const NB: usize,
+        const C: usize,
+    >(
+        &self,
+        cloud: &Cloud<'a, T, D>,
+        places: Range<usize>,
+        values: &impl Values<T, Q>,
+        amounts: &[T],
+    ) -> FourSums<V, NB, C> {
+        if D > 1 {
+            return self.sums_one_by_one::<S, T, V, Q, NB, C>(cloud, values, amounts);
+        }
+        match Run::all(&self.particles, cloud.positions.len()) {
+            Some(runs) => sums_of_runs::<S, T, V, Q, D, NB, C>(cloud, &runs, &self.cells, values, amounts),
+            None => Self::sums_apart::<S, T, V, Q, NB, C>(cloud, places, values, amounts),
+        }
+    }
+
+    /// [`CellGroup::sums_one_by_one`], out of the way of the code that usually runs.
+    #[inline(never)]
+    fn sums_apart<S: Sought, T: Scalar, V: Lanes<T>, Q: Field<T>, const NB: usize, const C: usize>(
+        cloud: &Cloud<'a, T, D>,
+        places: Range<usize>,
+        values: &impl Values<T, Q>,
+        amounts: &[T],
+    ) -> FourSums<V, NB, C> {
+        Self::new(cloud, places).sums_one_by_one::<S, T, V, Q, NB, C>(cloud, values, amounts)
+    }
+
+    /// The same wherever the particles are, one of each cell at a time.
+    #[inline(always)]
+    fn sums_one_by_one<S: Sought, T: Scalar, V: Lanes<T>, Q: Field<T>, const NB: usize, const C: usize>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        values: &impl Values<T, Q>,
+        amounts: &[T],
+    ) -> FourSums<V, NB, C> {
+        let mut sums = FourSums::new();
+        for k in 0..self.longest() {
+            let (numbers, mut weight) = self.points::<T, V>(k);
+            let psi = taylor_lanes::<T, V, D, NB>(&self.local(cloud, &numbers));
+            let mut first = weight;
+            if S::WEIGHTED || S::CONSERVED {
+                first = V::new(std::array::from_fn(|l| amounts[numbers[l]])) * weight;
+            }
+            if S::WEIGHTED {
+                weight = first;
+            }
+            if S::PRODUCTS {
+                sums.add_products(&psi, weight);
+            }
+            if S::VALUES {
+                let values = lanes_of::<T, V, Q, C>(|l| values.at(numbers[l]));
+                sums.add_values(&psi, weight, first, &values, Q::COMPONENTS);
+            }
+        }
+        sums
     }
 
     /// The `k`-th particle of each cell, and one; the last particle and zero where there are fewer.
     #[inline(always)]
-    pub(in super::super) fn points<T: Scalar, V: Lanes<T>>(&self, k: usize) -> ([usize; LANES], V) {
+    fn points<T: Scalar, V: Lanes<T>>(&self, k: usize) -> ([usize; LANES], V) {
         let numbers = std::array::from_fn(|l| self.particles[l][k.min(self.counts[l] - 1)] as usize);
         let weights = std::array::from_fn(|l| if k < self.counts[l] { T::one() } else { T::zero() });
         (numbers, V::new(weights))
@@ -46,11 +159,7 @@ impl<'a, const D: usize> CellGroup<'a, D> {
 
     /// Local coordinates of one particle of each cell.
     #[inline(always)]
-    pub(in super::super) fn local<T: Scalar, V: Lanes<T>>(
-        &self,
-        cloud: &Cloud<'_, T, D>,
-        numbers: &[usize; LANES],
-    ) -> [V; D] {
+    fn local<T: Scalar, V: Lanes<T>>(&self, cloud: &Cloud<'_, T, D>, numbers: &[usize; LANES]) -> [V; D] {
         let x: [_; LANES] = std::array::from_fn(|l| &cloud.positions[numbers[l]]);
         let (two, one) = (V::splat(T::lit(2.0)), V::splat(T::one()));
         std::array::from_fn(|a| {
@@ -59,17 +168,4 @@ impl<'a, const D: usize> CellGroup<'a, D> {
             (x * V::splat(cloud.grid.inverse_cell_size()[a]) - cell) * two - one
         })
     }
-}
-
-/// The components of four values, the `l`-th of which is `value(l)`.
-#[inline(always)]
-pub(in super::super) fn lanes_of<T: Scalar, V: Lanes<T>, Q: Field<T>>(
-    value: impl Fn(usize) -> Q,
-) -> [V; MOST_COMPONENTS] {
-    let values: [Q; LANES] = std::array::from_fn(value);
-    let mut components = [V::splat(T::zero()); MOST_COMPONENTS];
-    for q in 0..Q::COMPONENTS {
-        components[q] = V::new(std::array::from_fn(|l| values[l].component(q)));
-    }
-    components
 }

@@ -14,7 +14,7 @@ use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::field::{Field, MassMomentum};
 use crate::grid::Cell;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
-use crate::reconstruction::{Cloud, Point, Reconstruction};
+use crate::reconstruction::{Cloud, Point, Reconstruction, Values};
 use crate::scalar::Scalar;
 use crate::taylor::MOST_COMPONENTS;
 
@@ -27,6 +27,8 @@ type Along<V> = [[V; MOST_WIDTH]; 2];
 /// Functions along each axis at each point of a line.
 struct AtPoints<V, const D: usize> {
     kinds: Option<[[usize; D]; LANES]>,
+    /// Whether they are those of cells of one line that all are far from the ends of the grid.
+    inside: bool,
     points: usize,
     along: [[Along<V>; MOST_POINTS]; D],
 }
@@ -39,6 +41,7 @@ impl<V: Copy, const D: usize> AtPoints<V, D> {
         let nothing = [[V::splat(T::zero()); MOST_WIDTH]; 2];
         Self {
             kinds: None,
+            inside: false,
             points,
             along: [[nothing; MOST_POINTS]; D],
         }
@@ -54,6 +57,12 @@ impl<V: Copy, const D: usize> AtPoints<V, D> {
     ) where
         V: Lanes<T>,
     {
+        // Along one axis cells ascend: the first and the last one tell.
+        let inside = D == 1 && pass.kind(&cells[0]) == [0; D] && pass.kind(&cells[LANES - 1]) == [0; D];
+        if inside && self.inside {
+            return;
+        }
+        self.inside = inside;
         let kinds = std::array::from_fn(|l| pass.kind(&cells[l]));
         if self.kinds != Some(kinds) {
             self.kinds = Some(kinds);
@@ -88,6 +97,9 @@ impl<V: Copy, const D: usize> AtPoints<V, D> {
     #[inline(always)]
     fn at(&self, mut number: usize) -> Factors<V, D> {
         let along = std::array::from_fn(|axis| {
+            if D == 1 {
+                return &self.along[axis][number];
+            }
             let point = number % self.points;
             number /= self.points;
             &self.along[axis][point]
@@ -130,7 +142,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     pub(in super::super) fn integrate_stress<M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
         fits: Fits<'_, '_, T, D, M, R>,
-        stress: &impl Fn(usize) -> SMatrix<T, D, D>,
+        stress: &impl Values<T, SMatrix<T, D, D>>,
         sink: &mut impl FnMut(usize, SVector<T, D>),
     ) -> usize {
         with_lanes_of!(T, self.stress_in[_, _](fits, stress, sink))
@@ -140,7 +152,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     fn stress_in<V: Lanes<T>, M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
         fits: Fits<'_, '_, T, D, M, R>,
-        stress: &impl Fn(usize) -> SMatrix<T, D, D>,
+        stress: &impl Values<T, SMatrix<T, D, D>>,
         sink: &mut impl FnMut(usize, SVector<T, D>),
     ) -> usize {
         let inverse = self.grid.inverse_cell_size();
@@ -152,7 +164,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
                 std::array::from_fn(|a| value[c + a * D] * inverse[a])
             })),
         };
-        self.integrate::<false, V, _, R, _>(
+        self.integrate::<false, V, _, R, SMatrix<T, D, D>>(
             fits,
             stress,
             &parts,
@@ -166,7 +178,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     pub(in super::super) fn integrate_densities<M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
         fits: Fits<'_, '_, T, D, M, R>,
-        density: &impl Fn(usize) -> MassMomentum<T, D>,
+        density: &impl Values<T, MassMomentum<T, D>>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) {
         with_lanes_of!(T, self.densities_in[_, _](fits, density, sink));
@@ -176,21 +188,28 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     fn densities_in<V: Lanes<T>, M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
         fits: Fits<'_, '_, T, D, M, R>,
-        density: &impl Fn(usize) -> MassMomentum<T, D>,
+        density: &impl Values<T, MassMomentum<T, D>>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
     ) {
         let parts = |value: &[V; MOST_COMPONENTS]| Parts {
             scalar: Some(value[0]),
             ..momentum_parts(value)
         };
-        self.integrate::<false, V, _, R, _>(fits, density, &parts, sink, &mut |_, _, _| (), &amount_part);
+        self.integrate::<false, V, _, R, MassMomentum<T, D>>(
+            fits,
+            density,
+            &parts,
+            sink,
+            &mut |_, _, _| (),
+            &amount_part,
+        );
     }
 
     /// The same where the mass goes to the entries of the consistent matrix: `matrix(i, j, mass)`, `j <= i`.
     pub(in super::super) fn integrate_pairs<M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
         fits: Fits<'_, '_, T, D, M, R>,
-        density: &impl Fn(usize) -> MassMomentum<T, D>,
+        density: &impl Values<T, MassMomentum<T, D>>,
         sink: &mut impl FnMut(usize, SVector<T, D>),
         matrix: &mut impl FnMut(usize, usize, T),
     ) -> usize {
@@ -201,12 +220,19 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     fn density_pairs_in<V: Lanes<T>, M: BasisFamily<T, D>, R: Reconstruction<T, D>>(
         &self,
         fits: Fits<'_, '_, T, D, M, R>,
-        density: &impl Fn(usize) -> MassMomentum<T, D>,
+        density: &impl Values<T, MassMomentum<T, D>>,
         sink: &mut impl FnMut(usize, SVector<T, D>),
         matrix: &mut impl FnMut(usize, usize, T),
     ) -> usize {
         let mut sink = |dof: usize, _, momentum| sink(dof, momentum);
-        self.integrate::<true, V, _, R, _>(fits, density, &momentum_parts, &mut sink, matrix, &amount_part)
+        self.integrate::<true, V, _, R, MassMomentum<T, D>>(
+            fits,
+            density,
+            &momentum_parts,
+            &mut sink,
+            matrix,
+            &amount_part,
+        )
     }
 
     /// `parts` says what a value at a point adds, `part(phi, value, gradient)` the same for one DOF. Densities, whose first
@@ -221,7 +247,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     >(
         &self,
         fits: Fits<'_, '_, T, D, M, R>,
-        value: &impl Fn(usize) -> Q,
+        value: &impl Values<T, Q>,
         parts: &impl Fn(&[V; MOST_COMPONENTS]) -> Parts<V, D>,
         sink: &mut impl FnMut(usize, T, SVector<T, D>),
         matrix: &mut impl FnMut(usize, usize, T),
@@ -261,6 +287,13 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
                 },
             );
             reduced += outcome.reduced;
+            if D == 1 && places.len() == LANES && follow(&four) && outcome.hard == [false; LANES] {
+                sums.spread_line(self, &four[0], sink);
+                if PAIRS {
+                    pairs.spread_line(self, &four[0], matrix);
+                }
+                continue;
+            }
             sums.spread(self, &four[..places.len()], &outcome.hard, sink);
             if PAIRS {
                 pairs.spread(self, &four[..places.len()], &outcome.hard, matrix);
@@ -288,12 +321,18 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
                         }
                     });
                 };
-                let full = reconstruction.integrate_hard(cloud, cell, conserve, value, add);
+                let full = reconstruction.integrate_hard(cloud, cell, conserve, &|p| value.at(p), add);
                 reduced += usize::from(!full);
             }
         }
         reduced
     }
+}
+
+/// Whether cells that ascend along one axis follow each other.
+#[inline(always)]
+fn follow<const D: usize>(cells: &[Cell<D>; LANES]) -> bool {
+    cells[LANES - 1][0] - cells[0][0] == LANES as u32 - 1
 }
 
 /// What a mass and a momentum add to the momenta of the DOFs.

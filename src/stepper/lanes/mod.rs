@@ -12,6 +12,7 @@
 
 mod advance;
 mod fits;
+mod lines;
 mod mass_and_force;
 mod pairs;
 mod rows;

@@ -15,7 +15,7 @@ const ALONG: usize = MOST_WIDTH * (MOST_WIDTH + 1) / 2;
 const MOST: usize = ALONG * ALONG * ALONG;
 
 /// Number of the pair of the functions `a` and `b` of an axis.
-const fn pair(a: usize, b: usize) -> usize {
+pub(super) const fn pair(a: usize, b: usize) -> usize {
     let (high, low) = if a > b { (a, b) } else { (b, a) };
     high * (high + 1) / 2 + low
 }
@@ -23,7 +23,7 @@ const fn pair(a: usize, b: usize) -> usize {
 /// One sum for each product of pairs along the axes, axis 0 fastest.
 pub(super) struct PairSums<V, const D: usize> {
     cell: Option<Cell<D>>,
-    sums: [V; MOST],
+    pub(super) sums: [V; MOST],
 }
 
 impl<V: Copy, const D: usize> PairSums<V, D> {

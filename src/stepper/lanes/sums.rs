@@ -18,8 +18,8 @@ const MOST_DOFS: usize = 64;
 /// One scalar and one vector for each DOF.
 pub(super) struct Sums<V, const D: usize> {
     cell: Option<Cell<D>>,
-    scalar: [V; MOST_DOFS],
-    vector: [[V; D]; MOST_DOFS],
+    pub(super) scalar: [V; MOST_DOFS],
+    pub(super) vector: [[V; D]; MOST_DOFS],
 }
 
 /// What a group adds: a scalar times the functions, a vector times the functions, and a tensor times their slopes.

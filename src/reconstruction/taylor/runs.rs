@@ -1,0 +1,148 @@
+//! Sums over the particles of single cells along one axis, four particles at a time.
+//!
+//! Where the particles of a cell follow each other in memory, four of them are one load. With one particle of each of four cells
+//! in the lanes instead, every number has to be gathered.
+
+use super::cell_group::Sought;
+use crate::field::Field;
+use crate::grid::Cell;
+use crate::lanes::{LANES, Lanes};
+use crate::reconstruction::values::{four_components, four_numbers};
+use crate::reconstruction::{Cloud, Values};
+use crate::scalar::Scalar;
+use crate::taylor::{FourSums, taylor_lanes};
+
+/// Particles that follow each other.
+#[derive(Clone, Copy)]
+pub(super) struct Run {
+    first: usize,
+    end: usize,
+}
+
+impl Run {
+    /// The particles of each of four cells, in ascending order, if they follow each other and can be read four by four among all
+    /// `count` that there are.
+    #[inline(always)]
+    pub(super) fn all(particles: &[&[u32]; LANES], count: usize) -> Option<[Self; LANES]> {
+        let mut runs = [Self { first: 0, end: 0 }; LANES];
+        for (run, particles) in runs.iter_mut().zip(particles) {
+            let (first, last) = (*particles.first()? as usize, *particles.last()? as usize);
+            let (end, reach) = (last + 1, particles.len().next_multiple_of(LANES));
+            if end - first != particles.len() || first + reach > count {
+                return None;
+            }
+            *run = Self { first, end };
+        }
+        Some(runs)
+    }
+
+    /// Sums over the particles, which are those of `cell`, in parts that are spread over the lanes.
+    #[inline(never)]
+    fn sums<
+        S: Sought,
+        T: Scalar,
+        V: Lanes<T>,
+        Q: Field<T>,
+        const D: usize,
+        const NB: usize,
+        const C: usize,
+    >(
+        self,
+        cloud: &Cloud<'_, T, D>,
+        cell: &Cell<D>,
+        values: &impl Values<T, Q>,
+        amounts: &[T],
+    ) -> FourSums<V, NB, C> {
+        let mut sums = FourSums::new();
+        for first in (self.first..self.end).step_by(LANES) {
+            let psi = taylor_lanes::<T, V, D, NB>(&frame(cloud, cell, first));
+            let mut weight = first_ones(self.end - first);
+            let mut alone = weight;
+            if S::WEIGHTED || S::CONSERVED {
+                alone = four_numbers::<T, V>(amounts, first) * weight;
+            }
+            if S::WEIGHTED {
+                weight = alone;
+            }
+            if S::PRODUCTS {
+                sums.add_products(&psi, weight);
+            }
+            if S::VALUES {
+                let field = values.four::<V, C>(first);
+                sums.add_values(&psi, weight, alone, &field, Q::COMPONENTS);
+            }
+        }
+        sums
+    }
+}
+
+/// One in so many lanes, zero in the others.
+#[inline(always)]
+fn first_ones<T: Scalar, V: Lanes<T>>(count: usize) -> V {
+    let (zero, one) = (T::zero(), T::one());
+    match count {
+        1 => V::new([one, zero, zero, zero]),
+        2 => V::new([one, one, zero, zero]),
+        3 => V::new([one, one, one, zero]),
+        _ => V::splat(one),
+    }
+}
+
+/// Local coordinates of four particles of a cell.
+#[inline(always)]
+fn frame<T: Scalar, V: Lanes<T>, const D: usize>(
+    cloud: &Cloud<'_, T, D>,
+    cell: &Cell<D>,
+    first: usize,
+) -> [V; D] {
+    let (two, one) = (V::splat(T::lit(2.0)), V::splat(T::one()));
+    std::array::from_fn(|a| {
+        let x = four_components::<T, V, D>(cloud.positions, first, a) - V::splat(cloud.grid.min()[a]);
+        let index = V::splat(T::lit(f64::from(cell[a])));
+        (x * V::splat(cloud.grid.inverse_cell_size()[a]) - index) * two - one
+    })
+}
+
+/// The sums of four cells, a cell in each lane. Not inlined: among all that is done with them, a compiler would keep none of them
+/// in registers.
+#[inline(always)]
+pub(super) fn sums_of_runs<
+    S: Sought,
+    T: Scalar,
+    V: Lanes<T>,
+    Q: Field<T>,
+    const D: usize,
+    const NB: usize,
+    const C: usize,
+>(
+    cloud: &Cloud<'_, T, D>,
+    runs: &[Run; LANES],
+    cells: &[Cell<D>; LANES],
+    values: &impl Values<T, Q>,
+    amounts: &[T],
+) -> FourSums<V, NB, C> {
+    let a = runs[0].sums::<S, T, V, Q, D, NB, C>(cloud, &cells[0], values, amounts);
+    let b = runs[1].sums::<S, T, V, Q, D, NB, C>(cloud, &cells[1], values, amounts);
+    let c = runs[2].sums::<S, T, V, Q, D, NB, C>(cloud, &cells[2], values, amounts);
+    let d = runs[3].sums::<S, T, V, Q, D, NB, C>(cloud, &cells[3], values, amounts);
+    let mut sums = FourSums::new();
+    for i in 0..NB {
+        if S::PRODUCTS {
+            for j in 0..i + 1 {
+                let parts = [a.gram[i][j], b.gram[i][j], c.gram[i][j], d.gram[i][j]];
+                sums.gram[i][j] = V::new(V::sums(parts));
+            }
+        }
+        if S::VALUES {
+            for q in 0..Q::COMPONENTS {
+                let parts = [a.right[i][q], b.right[i][q], c.right[i][q], d.right[i][q]];
+                sums.right[i][q] = V::new(V::sums(parts));
+            }
+        }
+    }
+    if !S::WEIGHTED {
+        let count = |l: usize| T::count(runs[l].end - runs[l].first);
+        sums.gram[0][0] = V::new(std::array::from_fn(count));
+    }
+    sums
+}
