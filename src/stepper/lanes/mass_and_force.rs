@@ -43,22 +43,15 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         bodies: Bodies<'_, T, D>,
         sink: &mut impl FnMut(usize, T),
     ) {
-        let mut sums = Sums::<V, D>::new();
-        let mut sink = |i: usize, m: T, _| sink(i, m);
-        let mut p = 0;
-        while p < bodies.cells.len() {
-            let group = Group::<N>::at(p, bodies.cells);
-            let cell = &bodies.cells[p];
-            let factors = self.factors(cell, &group.vectors::<false, T, V, D>(bodies.positions));
-            let parts = Parts {
-                scalar: Some(group.amounts::<false, T, V>(bodies.masses)),
-                vector: None,
-                tensor: None,
-            };
-            sums.add(self, cell, &factors, &parts, &mut sink);
-            p += group.count;
-        }
-        sums.flush(self, true, &mut sink);
+        let bodies = bodies.even();
+        let mut pass = Masses {
+            pass: self,
+            bodies,
+            sums: Sums::<V, D>::new(),
+            sink: |i: usize, m: T, _| sink(i, m),
+        };
+        each_group(bodies.cells, &mut pass);
+        pass.sums.flush(self, true, &mut pass.sink);
     }
 
     /// Hands `matrix(i, j, mass)`, `j <= i`, what the particles add to the entries of the consistent mass matrix.
@@ -76,22 +69,15 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         bodies: Bodies<'_, T, D>,
         matrix: &mut impl FnMut(usize, usize, T),
     ) {
-        let mut sums = PairSums::<V, D>::new();
-        let mut p = 0;
-        while p < bodies.cells.len() {
-            let group = Group::<N>::at(p, bodies.cells);
-            let cell = &bodies.cells[p];
-            let factors = self.factors(cell, &group.vectors::<false, T, V, D>(bodies.positions));
-            sums.add(
-                self,
-                cell,
-                &factors,
-                group.amounts::<false, T, V>(bodies.masses),
-                matrix,
-            );
-            p += group.count;
-        }
-        sums.flush(self, matrix);
+        let bodies = bodies.even();
+        let mut pass = PairsOfMasses {
+            pass: self,
+            bodies,
+            sums: PairSums::<V, D>::new(),
+            matrix,
+        };
+        each_group(bodies.cells, &mut pass);
+        pass.sums.flush(self, pass.matrix);
     }
 
     /// Hands `sink(dof, momentum)` what the particles add to the DOFs.
@@ -111,24 +97,16 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         velocities: &[SVector<T, D>],
         sink: &mut impl FnMut(usize, SVector<T, D>),
     ) {
-        let mut sums = Sums::<V, D>::new();
-        let mut sink = |i: usize, _, q| sink(i, q);
-        let mut p = 0;
-        while p < bodies.cells.len() {
-            let group = Group::<N>::at(p, bodies.cells);
-            let cell = &bodies.cells[p];
-            let factors = self.factors(cell, &group.vectors::<false, T, V, D>(bodies.positions));
-            let mass = group.amounts::<false, T, V>(bodies.masses);
-            let velocities = group.vectors::<false, T, V, D>(velocities);
-            let parts = Parts {
-                scalar: None,
-                vector: Some(std::array::from_fn(|c| velocities[c] * mass)),
-                tensor: None,
-            };
-            sums.add(self, cell, &factors, &parts, &mut sink);
-            p += group.count;
-        }
-        sums.flush(self, false, &mut sink);
+        let bodies = bodies.even();
+        let mut pass = Momenta {
+            pass: self,
+            bodies,
+            velocities: &velocities[..bodies.cells.len()],
+            sums: Sums::<V, D>::new(),
+            sink: |i: usize, _, q| sink(i, q),
+        };
+        each_group(bodies.cells, &mut pass);
+        pass.sums.flush(self, false, &mut pass.sink);
     }
 
     /// Hands `sink(dof, mass, integral of stress times gradient)` what the particles add to the DOFs, given volumes and stresses; `felt(p, stress)` says what the
@@ -167,6 +145,92 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         };
         each_group(bodies.cells, &mut pass);
         pass.sums.flush(self, true, pass.sink);
+    }
+}
+
+/// The pass over masses.
+struct Masses<'a, T, V, const D: usize, B, S> {
+    pass: &'a Pass<'a, T, D, B>,
+    bodies: Bodies<'a, T, D>,
+    sums: Sums<V, D>,
+    sink: S,
+}
+
+impl<T, V, const D: usize, const N: usize, B, S> EachGroup<N> for Masses<'_, T, V, D, B, S>
+where
+    T: Scalar,
+    V: Lanes<T, N>,
+    B: BasisFamily<T, D>,
+    S: FnMut(usize, T, SVector<T, D>),
+{
+    #[inline(always)]
+    fn take<const FULL: bool>(&mut self, group: Group<N>) {
+        let (pass, bodies) = (self.pass, &self.bodies);
+        let cell = &bodies.cells[group.first];
+        let factors = pass.factors(cell, &group.vectors::<FULL, T, V, D>(bodies.positions));
+        let parts = Parts {
+            scalar: Some(group.amounts::<FULL, T, V>(bodies.masses)),
+            vector: None,
+            tensor: None,
+        };
+        self.sums.add(pass, cell, &factors, &parts, &mut self.sink);
+    }
+}
+
+/// The pass over masses that go to the consistent matrix.
+struct PairsOfMasses<'a, T, V, const D: usize, B, M> {
+    pass: &'a Pass<'a, T, D, B>,
+    bodies: Bodies<'a, T, D>,
+    sums: PairSums<V, D>,
+    matrix: &'a mut M,
+}
+
+impl<T, V, const D: usize, const N: usize, B, M> EachGroup<N> for PairsOfMasses<'_, T, V, D, B, M>
+where
+    T: Scalar,
+    V: Lanes<T, N>,
+    B: BasisFamily<T, D>,
+    M: FnMut(usize, usize, T),
+{
+    #[inline(always)]
+    fn take<const FULL: bool>(&mut self, group: Group<N>) {
+        let (pass, bodies) = (self.pass, &self.bodies);
+        let cell = &bodies.cells[group.first];
+        let factors = pass.factors(cell, &group.vectors::<FULL, T, V, D>(bodies.positions));
+        let mass = group.amounts::<FULL, T, V>(bodies.masses);
+        self.sums.add(pass, cell, &factors, mass, self.matrix);
+    }
+}
+
+/// The pass over momenta.
+struct Momenta<'a, T, V, const D: usize, B, S> {
+    pass: &'a Pass<'a, T, D, B>,
+    bodies: Bodies<'a, T, D>,
+    velocities: &'a [SVector<T, D>],
+    sums: Sums<V, D>,
+    sink: S,
+}
+
+impl<T, V, const D: usize, const N: usize, B, S> EachGroup<N> for Momenta<'_, T, V, D, B, S>
+where
+    T: Scalar,
+    V: Lanes<T, N>,
+    B: BasisFamily<T, D>,
+    S: FnMut(usize, T, SVector<T, D>),
+{
+    #[inline(always)]
+    fn take<const FULL: bool>(&mut self, group: Group<N>) {
+        let (pass, bodies) = (self.pass, &self.bodies);
+        let cell = &bodies.cells[group.first];
+        let factors = pass.factors(cell, &group.vectors::<FULL, T, V, D>(bodies.positions));
+        let mass = group.amounts::<FULL, T, V>(bodies.masses);
+        let velocities = group.vectors::<FULL, T, V, D>(self.velocities);
+        let parts = Parts {
+            scalar: None,
+            vector: Some(std::array::from_fn(|c| velocities[c] * mass)),
+            tensor: None,
+        };
+        self.sums.add(pass, cell, &factors, &parts, &mut self.sink);
     }
 }
 
