@@ -1,5 +1,7 @@
 //! Which cell holds which particles.
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use crate::grid::{Cell, Grid};
@@ -17,6 +19,8 @@ pub struct Bins<const D: usize> {
     order: Vec<u32>,
     occupied: Vec<u32>,
     lists_are_stale: bool,
+    /// Whether the lists, end to end, are the particles in their own order.
+    are_in_order: bool,
 }
 
 impl<const D: usize> Bins<D> {
@@ -41,6 +45,7 @@ impl<const D: usize> Bins<D> {
             order: Vec::new(),
             occupied: Vec::new(),
             lists_are_stale: true,
+            are_in_order: false,
         };
         bins.locate(grid, positions)?;
         Ok(bins)
@@ -107,9 +112,11 @@ impl<const D: usize> Bins<D> {
             }
             self.start[c + 1] += self.start[c];
         }
+        self.are_in_order = true;
         for (p, cell) in self.cell_of.iter().enumerate() {
             let next = &mut self.start[grid.linear(cell)];
             self.order[*next as usize] = p as u32;
+            self.are_in_order &= *next as usize == p;
             *next += 1;
         }
         // Filling advanced every start to its cell's end: shift them back.
@@ -140,6 +147,36 @@ impl<const D: usize> Bins<D> {
             (Some(&first), Some(&end)) => &self.order[first as usize..end as usize],
             _ => &[],
         }
+    }
+
+    /// Number of particles in the cell with number `cell`.
+    #[inline(always)]
+    pub(crate) fn count_in(&self, cell: usize) -> usize {
+        match (self.start.get(cell), self.start.get(cell + 1)) {
+            (Some(&first), Some(&end)) => (end - first) as usize,
+            _ => 0,
+        }
+    }
+
+    /// The particles of the cell with number `cell`, if it has any and they follow each other.
+    #[inline(always)]
+    pub(crate) fn run_in(&self, cell: usize) -> Option<Range<usize>> {
+        if !self.are_in_order {
+            return self.run_in_list(cell);
+        }
+        match (self.start.get(cell), self.start.get(cell + 1)) {
+            (Some(&first), Some(&end)) if first < end => Some(first as usize..end as usize),
+            _ => None,
+        }
+    }
+
+    #[inline(never)]
+    fn run_in_list(&self, cell: usize) -> Option<Range<usize>> {
+        let particles = self.particles_in(cell);
+        let (&first, &last) = (particles.first()?, particles.last()?);
+        // They ascend.
+        let follow = (last - first) as usize + 1 == particles.len();
+        follow.then_some(first as usize..last as usize + 1)
     }
 
     /// Numbers of the cells that hold a particle, ascending.
@@ -249,6 +286,10 @@ mod tests {
         let mut x = vec![vector![3.5], vector![0.5], vector![0.2], vector![1.0]];
         let mut bins = Bins::new(&grid, &x).unwrap();
         assert_eq!(bins.particles_in(0), &[1, 2]);
+        assert_eq!(
+            (bins.run_in(0), bins.run_in(2), bins.run_in(9)),
+            (Some(1..3), None, None)
+        );
         assert_eq!(bins.particles_in(1), &[3]);
         assert_eq!(bins.particles_in(2), &[] as &[u32]);
         assert_eq!(bins.occupied(), &[0, 1, 3]);
@@ -258,6 +299,12 @@ mod tests {
         assert_eq!(bins.particles_in(0), &[2]);
         assert_eq!(bins.particles_in(2), &[1]);
         assert_eq!(bins.occupied(), &[0, 1, 2, 3]);
+        let in_order = [0.2, 0.5, 1.0, 2.5].map(|x| vector![x]);
+        let bins_in_order = Bins::new(&grid, &in_order).unwrap();
+        assert_eq!(
+            (bins_in_order.run_in(0), bins_in_order.run_in(3)),
+            (Some(0..2), None)
+        );
         x[3][0] = -0.1;
         assert_eq!(bins.locate(&grid, &x), Err(Outside(3)));
     }

@@ -102,6 +102,24 @@ impl<'a, T: Scalar, const D: usize> Cloud<'a, T, D> {
     }
 }
 
+/// The occupied cells at the given places, four at most and one at least; the last one again in the place of others.
+#[inline(always)]
+pub(crate) fn four_cells<T: Scalar, const D: usize>(
+    cloud: &Cloud<'_, T, D>,
+    places: Range<usize>,
+) -> [(usize, Cell<D>); LANES] {
+    let occupied = &cloud.bins.occupied()[places];
+    if let (1, &[a, b, c, d]) = (D, occupied) {
+        // Numbers along the only axis are places on it.
+        let first = cloud.grid.window().first()[0];
+        return [a, b, c, d].map(|number| (number as usize, [first + number; D]));
+    }
+    std::array::from_fn(|l| {
+        let number = occupied[l.min(occupied.len() - 1)] as usize;
+        (number, cloud.grid.cell(number))
+    })
+}
+
 /// What became of four cells that were streamed at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Four {

@@ -531,7 +531,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
     ) -> Four {
-        if D == 1 {
+        if D == 1 && Q::COMPONENTS == 1 {
+            self.integrate_few::<V, Q, 1>(cloud, cells, conserve, value, sink)
+        } else if D == 1 {
             self.integrate_few::<V, Q, MOST_ALONG_ONE_AXIS>(cloud, cells, conserve, value, sink)
         } else {
             self.integrate_few::<V, Q, MOST_COMPONENTS>(cloud, cells, conserve, value, sink)

@@ -105,8 +105,9 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D
                 cloud,
                 cells: place..place + cells.len(),
             };
-            let mut sink = |i: usize, q: SVector<T, D>| momentum[i - first] += q;
-            let mut matrix = |i: usize, j: usize, mass| {
+            // By value: references to the slices would be read anew for each DOF.
+            let mut sink = move |i: usize, q: SVector<T, D>| momentum[i - first] += q;
+            let mut matrix = move |i: usize, j: usize, mass| {
                 banded_row(rows, i - first, half_band)[half_band + j - i] += mass;
             };
             at_fixed_points!(

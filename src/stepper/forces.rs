@@ -302,7 +302,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
                     cloud,
                     cells: place..place + cells.len(),
                 };
-                let mut sink = |i: usize, f| force[i - first] -= f;
+                // By value: a reference to the slice would be read anew for each DOF.
+                let mut sink = move |i: usize, f| force[i - first] -= f;
                 let found =
                     at_fixed_points!(B, basis, cloud.grid, integrate_stress(fits, &stress, &mut sink));
                 return reduced.set(found);

@@ -7,15 +7,15 @@ use crate::field::Field;
 use crate::grid::Cell;
 use crate::lanes::{LANES, Lanes};
 use crate::reconstruction::values::lanes_of;
-use crate::reconstruction::{Cloud, Values};
+use crate::reconstruction::{Cloud, Values, four_cells};
 use crate::scalar::Scalar;
 use crate::taylor::{FourSums, taylor_lanes};
 
 /// Up to four occupied cells with their particles; spare lanes repeat the last cell.
-pub(in super::super) struct CellGroup<'a, const D: usize> {
+pub(in super::super) struct CellGroup<const D: usize> {
     pub(in super::super) len: usize,
     pub(in super::super) cells: [Cell<D>; LANES],
-    particles: [&'a [u32]; LANES],
+    numbers: [usize; LANES],
     pub(in super::super) counts: [usize; LANES],
 }
 
@@ -64,17 +64,16 @@ impl Sought for OfValues {
     const PRODUCTS: bool = false;
 }
 
-impl<'a, const D: usize> CellGroup<'a, D> {
+impl<const D: usize> CellGroup<D> {
     #[inline(always)]
-    pub(in super::super) fn new<T: Scalar>(cloud: &Cloud<'a, T, D>, places: Range<usize>) -> Self {
-        let occupied = &cloud.bins.occupied()[places];
-        let numbers: [usize; LANES] = std::array::from_fn(|l| occupied[l.min(occupied.len() - 1)] as usize);
-        let particles: [&[u32]; LANES] = std::array::from_fn(|l| cloud.bins.particles_in(numbers[l]));
+    pub(in super::super) fn new<T: Scalar>(cloud: &Cloud<'_, T, D>, places: Range<usize>) -> Self {
+        let len = places.len();
+        let cells = four_cells(cloud, places);
         Self {
-            len: occupied.len(),
-            cells: std::array::from_fn(|l| cloud.grid.cell(numbers[l])),
-            counts: std::array::from_fn(|l| particles[l].len()),
-            particles,
+            len,
+            cells: cells.map(|(_, cell)| cell),
+            counts: cells.map(|(number, _)| cloud.bins.count_in(number)),
+            numbers: cells.map(|(number, _)| number),
         }
     }
 
@@ -94,7 +93,7 @@ impl<'a, const D: usize> CellGroup<'a, D> {
         const C: usize,
     >(
         &self,
-        cloud: &Cloud<'a, T, D>,
+        cloud: &Cloud<'_, T, D>,
         places: Range<usize>,
         values: &impl Values<T, Q>,
         amounts: &[T],
@@ -102,7 +101,7 @@ impl<'a, const D: usize> CellGroup<'a, D> {
         if D > 1 {
             return self.sums_one_by_one::<S, T, V, Q, NB, C>(cloud, values, amounts);
         }
-        match Run::all(&self.particles, cloud.positions.len()) {
+        match Run::all(cloud.bins, &self.numbers, cloud.positions.len()) {
             Some(runs) => sums_of_runs::<S, T, V, Q, D, NB, C>(cloud, &runs, &self.cells, values, amounts),
             None => Self::sums_apart::<S, T, V, Q, NB, C>(cloud, places, values, amounts),
         }
@@ -111,7 +110,7 @@ impl<'a, const D: usize> CellGroup<'a, D> {
     /// [`CellGroup::sums_one_by_one`], out of the way of the code that usually runs.
     #[inline(never)]
     fn sums_apart<S: Sought, T: Scalar, V: Lanes<T>, Q: Field<T>, const NB: usize, const C: usize>(
-        cloud: &Cloud<'a, T, D>,
+        cloud: &Cloud<'_, T, D>,
         places: Range<usize>,
         values: &impl Values<T, Q>,
         amounts: &[T],
@@ -128,8 +127,9 @@ impl<'a, const D: usize> CellGroup<'a, D> {
         amounts: &[T],
     ) -> FourSums<V, NB, C> {
         let mut sums = FourSums::new();
+        let particles: [&[u32]; LANES] = std::array::from_fn(|l| cloud.bins.particles_in(self.numbers[l]));
         for k in 0..self.longest() {
-            let (numbers, mut weight) = self.points::<T, V>(k);
+            let (numbers, mut weight) = self.points::<T, V>(&particles, k);
             let psi = taylor_lanes::<T, V, D, NB>(&self.local(cloud, &numbers));
             let mut first = weight;
             if S::WEIGHTED || S::CONSERVED {
@@ -151,8 +151,8 @@ impl<'a, const D: usize> CellGroup<'a, D> {
 
     /// The `k`-th particle of each cell, and one; the last particle and zero where there are fewer.
     #[inline(always)]
-    fn points<T: Scalar, V: Lanes<T>>(&self, k: usize) -> ([usize; LANES], V) {
-        let numbers = std::array::from_fn(|l| self.particles[l][k.min(self.counts[l] - 1)] as usize);
+    fn points<T: Scalar, V: Lanes<T>>(&self, particles: &[&[u32]; LANES], k: usize) -> ([usize; LANES], V) {
+        let numbers = std::array::from_fn(|l| particles[l][k.min(self.counts[l] - 1)] as usize);
         let weights = std::array::from_fn(|l| if k < self.counts[l] { T::one() } else { T::zero() });
         (numbers, V::new(weights))
     }

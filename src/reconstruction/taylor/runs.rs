@@ -3,10 +3,13 @@
 //! Where the particles of a cell follow each other in memory, four of them are one load. With one particle of each of four cells
 //! in the lanes instead, every number has to be gathered.
 
+use std::ops::Range;
+
 use super::cell_group::Sought;
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::lanes::{LANES, Lanes};
+use crate::particles::Bins;
 use crate::reconstruction::values::{four_components, four_numbers};
 use crate::reconstruction::{Cloud, Values};
 use crate::scalar::Scalar;
@@ -20,20 +23,20 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// The particles of each of four cells, in ascending order, if they follow each other and can be read four by four among all
-    /// `count` that there are.
+    /// The particles of each of four cells, if they follow each other and can be read four by four among all `count` that there
+    /// are.
     #[inline(always)]
-    pub(super) fn all(particles: &[&[u32]; LANES], count: usize) -> Option<[Self; LANES]> {
-        let mut runs = [Self { first: 0, end: 0 }; LANES];
-        for (run, particles) in runs.iter_mut().zip(particles) {
-            let (first, last) = (*particles.first()? as usize, *particles.last()? as usize);
-            let (end, reach) = (last + 1, particles.len().next_multiple_of(LANES));
-            if end - first != particles.len() || first + reach > count {
-                return None;
-            }
-            *run = Self { first, end };
-        }
-        Some(runs)
+    pub(super) fn all<const D: usize>(
+        bins: &Bins<D>,
+        cells: &[usize; LANES],
+        count: usize,
+    ) -> Option<[Self; LANES]> {
+        let run = |cell: usize| {
+            let Range { start, end } = bins.run_in(cell)?;
+            let can_be_read = start + (end - start).next_multiple_of(LANES) <= count;
+            can_be_read.then_some(Self { first: start, end })
+        };
+        Some([run(cells[0])?, run(cells[1])?, run(cells[2])?, run(cells[3])?])
     }
 
     /// Sums over the particles, which are those of `cell`, in parts that are spread over the lanes.
@@ -141,7 +144,8 @@ pub(super) fn sums_of_runs<
         }
     }
     if !S::WEIGHTED {
-        let count = |l: usize| T::count(runs[l].end - runs[l].first);
+        // A conversion from 64 bits takes five times as long.
+        let count = |l: usize| T::lit(f64::from((runs[l].end - runs[l].first) as u32));
         sums.gram[0][0] = V::new(std::array::from_fn(count));
     }
     sums

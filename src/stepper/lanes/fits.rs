@@ -14,7 +14,7 @@ use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::field::{Field, MassMomentum};
 use crate::grid::Cell;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
-use crate::reconstruction::{Cloud, Point, Reconstruction, Values};
+use crate::reconstruction::{Cloud, Point, Reconstruction, Values, four_cells};
 use crate::scalar::Scalar;
 use crate::taylor::MOST_COMPONENTS;
 
@@ -268,9 +268,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         let mut reduced = 0;
         for first in cells.clone().step_by(LANES) {
             let places = first..cells.end.min(first + LANES);
-            let last = places.end - 1;
-            let four: [Cell<D>; LANES] =
-                std::array::from_fn(|l| self.grid.cell(occupied[last.min(first + l)] as usize));
+            let four = four_cells(cloud, places.clone()).map(|(_, cell)| cell);
             functions.take(self, &four, units);
             let outcome = reconstruction.integrate_four::<V, Q>(
                 cloud,
