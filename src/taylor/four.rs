@@ -91,15 +91,16 @@ impl<V: Copy, const NB: usize, const C: usize> FourSums<V, NB, C> {
         }
     }
 
-    /// Adds the products of a point of each cell with its weight, zero where a cell has no further point.
+    /// Adds the products of a point of each cell with its weight, zero where a cell has no further point: all, or of the functions
+    /// from number `from` on with those before them.
     #[inline(always)]
-    pub(crate) fn add_products<T: Scalar>(&mut self, psi: &[V; NB], weight: V)
+    pub(crate) fn add_products<T: Scalar>(&mut self, psi: &[V; NB], weight: V, from: usize)
     where
         V: Lanes<T>,
     {
-        for i in 0..NB {
+        for i in from..NB {
             let weighted = psi[i] * weight;
-            for j in 0..=i {
+            for j in 0..i + 1 {
                 self.gram[i][j] = weighted.mul_add(psi[j], self.gram[i][j]);
             }
         }

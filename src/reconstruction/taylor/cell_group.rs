@@ -139,7 +139,7 @@ impl<const D: usize> CellGroup<D> {
                 weight = first;
             }
             if S::PRODUCTS {
-                sums.add_products(&psi, weight);
+                sums.add_products(&psi, weight, 0);
             }
             if S::VALUES {
                 let values = lanes_of::<T, V, Q, C>(|l| values.at(numbers[l]));

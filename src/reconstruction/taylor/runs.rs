@@ -57,25 +57,55 @@ impl Run {
         amounts: &[T],
     ) -> FourSums<V, NB, C> {
         let mut sums = FourSums::new();
-        for first in (self.first..self.end).step_by(LANES) {
-            let psi = taylor_lanes::<T, V, D, NB>(&frame(cloud, cell, first));
-            let mut weight = first_ones(self.end - first);
-            let mut alone = weight;
-            if S::WEIGHTED || S::CONSERVED {
-                alone = four_numbers::<T, V>(amounts, first) * weight;
-            }
-            if S::WEIGHTED {
-                weight = alone;
-            }
-            if S::PRODUCTS {
-                sums.add_products(&psi, weight);
-            }
-            if S::VALUES {
-                let field = values.four::<V, C>(first);
-                sums.add_values(&psi, weight, alone, &field, Q::COMPONENTS);
-            }
+        let mut first = self.first;
+        // Full fours have a loop of their own, in which a compiler knows that the ones are ones.
+        while first + LANES <= self.end {
+            let ones = V::splat(T::one());
+            add_four::<S, T, V, Q, D, NB, C>(&mut sums, cloud, cell, first, ones, values, amounts);
+            first += LANES;
+        }
+        if first < self.end {
+            let ones = first_ones(self.end - first);
+            add_four::<S, T, V, Q, D, NB, C>(&mut sums, cloud, cell, first, ones, values, amounts);
         }
         sums
+    }
+}
+
+/// Adds four particles, the first of which has the number `first`; `ones` are zero for those that do not count.
+#[inline(always)]
+fn add_four<
+    S: Sought,
+    T: Scalar,
+    V: Lanes<T>,
+    Q: Field<T>,
+    const D: usize,
+    const NB: usize,
+    const C: usize,
+>(
+    sums: &mut FourSums<V, NB, C>,
+    cloud: &Cloud<'_, T, D>,
+    cell: &Cell<D>,
+    first: usize,
+    ones: V,
+    values: &impl Values<T, Q>,
+    amounts: &[T],
+) {
+    let psi = taylor_lanes::<T, V, D, NB>(&frame(cloud, cell, first));
+    let (mut weight, mut alone) = (ones, ones);
+    if S::WEIGHTED || S::CONSERVED {
+        alone = four_numbers::<T, V>(amounts, first) * ones;
+    }
+    if S::WEIGHTED {
+        weight = alone;
+    }
+    if S::PRODUCTS {
+        // Without weights the first product is the number of particles.
+        sums.add_products(&psi, weight, usize::from(!S::WEIGHTED));
+    }
+    if S::VALUES {
+        let field = values.four::<V, C>(first);
+        sums.add_values(&psi, weight, alone, &field, Q::COMPONENTS);
     }
 }
 
@@ -132,6 +162,9 @@ pub(super) fn sums_of_runs<
     for i in 0..NB {
         if S::PRODUCTS {
             for j in 0..i + 1 {
+                if i == 0 && !S::WEIGHTED {
+                    continue;
+                }
                 let parts = [a.gram[i][j], b.gram[i][j], c.gram[i][j], d.gram[i][j]];
                 sums.gram[i][j] = V::new(V::sums(parts));
             }
