@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use super::filling::OpenSides;
 use crate::lanes::{LANES, Lanes};
-use crate::reconstruction::taylor::{self, CellGroup, OfValues, Weighted};
-use crate::reconstruction::{Cloud, Values};
+use crate::reconstruction::Cloud;
+use crate::reconstruction::taylor::{self, CellGroup};
 use crate::scalar::Scalar;
-use crate::taylor::{Factor, FourSums, Products, Rights, factorise, shift_lanes};
+use crate::taylor::{Factor, Products, Rights, factorise, shift_lanes};
 
 /// In place of a neighbour that there is not.
 pub(super) const NONE: u32 = u32::MAX;
@@ -81,28 +81,6 @@ pub(super) fn keep_gram<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>
     let group = CellGroup::new(cloud, places.clone());
     let sums = group.sums::<taylor::Products, T, V, T, NB, 1>(cloud, places, &nothing, cloud.volumes);
     keep::<T, V, NB>(&sums.gram, kept);
-}
-
-/// Sums over the own particles of each of the cells of functions times the components of `value`, and, if there are `weights`,
-/// of products too, so weighted.
-#[inline(always)]
-pub(super) fn sums<T, V, Q, const D: usize, const NB: usize, const C: usize>(
-    cloud: &Cloud<'_, T, D>,
-    places: Range<usize>,
-    weights: Option<&[T]>,
-    value: &impl Values<T, Q>,
-) -> (FourSums<V, NB, C>, [usize; LANES])
-where
-    T: Scalar,
-    V: Lanes<T>,
-    Q: crate::field::Field<T>,
-{
-    let group = CellGroup::new(cloud, places.clone());
-    let sums = match weights {
-        Some(weights) => group.sums::<Weighted, T, V, Q, NB, C>(cloud, places, value, weights),
-        None => group.sums::<OfValues, T, V, Q, NB, C>(cloud, places, value, cloud.volumes),
-    };
-    (sums, group.counts)
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
@@ -313,16 +291,27 @@ fn with_neighbours<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
             }
             let at: [usize; LANES] =
                 std::array::from_fn(|l| if places[l] == NONE { 0 } else { places[l] as usize });
-            let mut rows: Products<V, NB> = std::array::from_fn(|i| {
-                std::array::from_fn(|j| {
+            let of = at.map(|place| (&grams[place / LANES], place % LANES));
+            let [a, b, c, d] = of;
+            let mut rows = gram;
+            for i in 0..NB {
+                for j in 0..NB {
                     let (high, low) = (i.max(j), i.min(j));
-                    V::new(std::array::from_fn(|l| {
-                        grams[at[l] / LANES][high][low][at[l] % LANES]
-                    }))
-                })
-            });
+                    rows[i][j] = V::new([
+                        a.0[high][low][a.1],
+                        b.0[high][low][b.1],
+                        c.0[high][low][c.1],
+                        d.0[high][low][d.1],
+                    ]);
+                }
+            }
             shift_lanes::<T, V, D, NB, NB>(&mut rows, NB, axis, side > 0);
-            let mut columns: Products<V, NB> = std::array::from_fn(|j| std::array::from_fn(|i| rows[i][j]));
+            let mut columns = rows;
+            for i in 0..NB {
+                for j in 0..NB {
+                    columns[j][i] = rows[i][j];
+                }
+            }
             shift_lanes::<T, V, D, NB, NB>(&mut columns, NB, axis, side > 0);
             let mask = mask::<T, V>(there);
             for i in 0..NB {

@@ -135,16 +135,18 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     /// Makes room for all cells there are, so that a later step never has to allocate.
     fn reserve(&mut self, cells: usize) {
         let groups = cells.div_ceil(LANES);
-        self.cells.clear();
-        self.cells.reserve(cells);
-        self.grams.clear();
-        self.grams.reserve(groups);
-        self.fits.clear();
-        self.fits.reserve(groups);
-        self.sums.clear();
-        self.sums.reserve(groups * NB * self.components);
+        make_room(&mut self.cells, cells);
+        make_room(&mut self.grams, groups);
+        make_room(&mut self.fits, groups);
+        make_room(&mut self.sums, groups * NB * self.components);
         self.pulls.reserve(cells, NB * self.components);
     }
+}
+
+/// Makes room for so many values in all. Those of the last step stay: all are written anew, and to empty the list would be to fill
+/// it once more.
+fn make_room<A>(values: &mut Vec<A>, count: usize) {
+    values.reserve(count.saturating_sub(values.len()));
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for RelaxedTaylor<T, D, NB> {

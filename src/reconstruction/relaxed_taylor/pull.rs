@@ -2,6 +2,7 @@
 
 use nalgebra::SVector;
 
+use super::make_room;
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
@@ -29,10 +30,8 @@ impl<T: Scalar> Pulls<T> {
 
     /// Makes room for so many cells with so many coefficients each.
     pub(super) fn reserve(&mut self, cells: usize, each: usize) {
-        self.coefficients.clear();
-        self.coefficients.reserve(cells * each);
-        self.shares.clear();
-        self.shares.reserve(cells);
+        make_room(&mut self.coefficients, cells * each);
+        make_room(&mut self.shares, cells);
     }
 
     /// In place of the share of a cell that is left to be moved by itself.
@@ -42,7 +41,7 @@ impl<T: Scalar> Pulls<T> {
 
     /// Rows of so many cells, none of which pulls, four cells together.
     pub(super) fn rows(&mut self, cells: usize, each: usize) -> PullRows<'_, T> {
-        self.coefficients.clear();
+        // Coefficients of cells that do not pull are not looked at.
         self.coefficients.resize(cells * each, T::zero());
         self.shares.clear();
         self.shares.resize(cells, T::zero());
@@ -87,17 +86,43 @@ impl<T: Scalar> Pulls<T> {
         let mut first = 0;
         while let Some(cell) = cells.get(first) {
             let all = &cells[first..cells.len().min(first + LANES)];
-            let count = all.iter().take_while(|&other| other == cell).count();
+            let count = match all.first_chunk::<LANES>() {
+                Some(four) if four.iter().all(|other| other == cell) => LANES,
+                _ => all.iter().take_while(|&other| other == cell).count(),
+            };
             if last != Some(cell) {
                 // A particle's cell is occupied.
                 near = cloud.bins.place_of(cloud.grid.linear(cell), near).unwrap_or(near);
                 last = Some(cell);
             }
             if self.shares[near] > T::zero() {
-                let s = frame::<T, V, D>(cloud, cell, |l| &positions[first + l.min(count - 1)]);
-                self.move_four::<V, Q, D, NB>(near, &s, &mut values[first..first + count]);
+                let (x, values) = (
+                    &positions[first..first + count],
+                    &mut values[first..first + count],
+                );
+                match (x.first_chunk(), values.first_chunk_mut()) {
+                    (Some(x), Some(values)) => {
+                        self.move_four::<V, Q, D, NB>(near, &frame(cloud, cell, x), values);
+                    }
+                    _ => self.move_few::<V, Q, D, NB>(near, &frame(cloud, cell, &repeated(x)), values),
+                }
             }
             first += count;
+        }
+    }
+
+    /// Moves less than four.
+    #[inline(never)]
+    fn move_few<V: Lanes<T>, Q: Field<T>, const D: usize, const NB: usize>(
+        &self,
+        place: usize,
+        s: &[V; D],
+        values: &mut [Q],
+    ) {
+        let mut four = repeated(values);
+        self.move_four::<V, Q, D, NB>(place, s, &mut four);
+        for (value, new) in values.iter_mut().zip(four) {
+            *value = new;
         }
     }
 
@@ -106,36 +131,40 @@ impl<T: Scalar> Pulls<T> {
         &self,
         place: usize,
         s: &[V; D],
-        values: &mut [Q],
+        values: &mut [Q; LANES],
     ) {
         let psi = taylor_lanes::<T, V, D, NB>(s);
         let each = NB * Q::COMPONENTS;
         let coefficients = &self.coefficients[place * each..(place + 1) * each];
         let (zero, share) = (V::splat(T::zero()), V::splat(self.shares[place]));
         for q in 0..Q::COMPONENTS {
-            let old = V::new(std::array::from_fn(|l| {
-                values[l.min(values.len() - 1)].component(q)
-            }));
+            let old = V::new(std::array::from_fn(|l| values[l].component(q)));
             // Only the change is rounded where the polynomial sees the value.
             let mut change = zero - old * share;
             for k in (0..NB).rev() {
                 change = psi[k].mul_add(V::splat(coefficients[k * Q::COMPONENTS + q]), change);
             }
-            for (value, new) in values.iter_mut().zip((old + change).array()) {
-                value.set_component(q, new);
+            let new = (old + change).array();
+            for l in 0..LANES {
+                values[l].set_component(q, new[l]);
             }
         }
     }
 }
 
+/// Four of them, the last one again where there are fewer.
+#[inline(always)]
+fn repeated<A: Copy>(values: &[A]) -> [A; LANES] {
+    std::array::from_fn(|l| values[l.min(values.len() - 1)])
+}
+
 /// Local coordinates of four points of a cell.
 #[inline(always)]
-fn frame<'a, T: Scalar, V: Lanes<T>, const D: usize>(
+fn frame<T: Scalar, V: Lanes<T>, const D: usize>(
     cloud: &Cloud<'_, T, D>,
     cell: &Cell<D>,
-    x: impl Fn(usize) -> &'a SVector<T, D>,
+    x: &[SVector<T, D>; LANES],
 ) -> [V; D] {
-    let x: [_; LANES] = std::array::from_fn(x);
     let (two, one) = (V::splat(T::lit(2.0)), V::splat(T::one()));
     std::array::from_fn(|a| {
         let x = V::new(std::array::from_fn(|l| x[l][a])) - V::splat(cloud.grid.min()[a]);

@@ -1,14 +1,14 @@
 //! Moving values towards the fits.
 
 use super::cells::{Kind, own_fit, wide_coefficients};
-use super::four::{NONE, middle, sums};
+use super::four::{NONE, middle};
 use super::pull::{PullRows, Pulls, keep_pulls};
 use super::stream::difference;
 use super::{ALIKE, GROUPS, RelaxedTaylor};
 use crate::field::Field;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::each_span;
-use crate::reconstruction::taylor::local;
+use crate::reconstruction::taylor::{CellGroup, Weighted, local};
 use crate::reconstruction::{Cloud, Crossed, Patch, Reconstruction, Stored};
 use crate::scalar::Scalar;
 use crate::taylor::{CellFit, MOST_ALONG_ONE_AXIS, MOST_COMPONENTS, Rights, factorise};
@@ -171,9 +171,10 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     ) {
         for (k, row) in rows.groups().enumerate() {
             let places = self.places(first + k);
-            let (sums, counts) =
-                sums::<T, V, Q, D, NB, C>(cloud, places.clone(), Some(weights), &Stored(values));
-            let fits = factorise::<T, V, D, NB>(&sums.gram, 0, &counts, self.tolerance);
+            let group = CellGroup::new(cloud, places.clone());
+            let sums =
+                group.sums::<Weighted, T, V, Q, NB, C>(cloud, places.clone(), &Stored(values), weights);
+            let fits = factorise::<T, V, D, NB>(&sums.gram, 0, &group.counts, self.tolerance);
             let mut shares = [T::zero(); LANES];
             for (l, place) in places.enumerate() {
                 if self.cells[place].kind == Kind::Four {

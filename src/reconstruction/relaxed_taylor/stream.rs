@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use super::RelaxedTaylor;
 use super::cells::{Kind, ended_patch, own_fit, wide_coefficients};
-use super::four::{KeptSums, keep_sums, sums};
+use super::four::{KeptSums, keep_sums};
 use crate::field::Field;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::{Rows, each_span};
 use crate::reconstruction::gauss::polynomial;
-use crate::reconstruction::taylor::local;
+use crate::reconstruction::taylor::{CellGroup, OfValues, local};
 use crate::reconstruction::{Cloud, Patch, Point, Values};
 use crate::scalar::Scalar;
 use crate::taylor::{MOST_ALONG_ONE_AXIS, MOST_COMPONENTS, Rights, taylor_functions};
@@ -22,7 +22,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         value: &(impl Values<T, Q> + Sync),
     ) {
         let mut kept = std::mem::take(&mut self.sums);
-        kept.clear();
+        // All are written below: what a list of this length holds may stay.
         kept.resize(self.fits.len() * NB * Q::COMPONENTS, [T::zero(); LANES]);
         let work = Rows {
             values: &mut kept[..],
@@ -48,7 +48,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     ) {
         for (k, kept) in kept.chunks_exact_mut(NB * Q::COMPONENTS).enumerate() {
             let places = self.places(first + k);
-            let (sums, _) = sums::<T, V, Q, D, NB, C>(cloud, places, None, value);
+            let group = CellGroup::new(cloud, places.clone());
+            let sums = group.sums::<OfValues, T, V, Q, NB, C>(cloud, places, value, cloud.volumes);
             keep_sums::<T, V, NB, C>(&sums.right, Q::COMPONENTS, kept);
         }
     }
