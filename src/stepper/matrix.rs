@@ -148,9 +148,10 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
         if mass != VelocityMass::Constrained {
             if fresh {
                 factor.copy_from(band);
-                factor.factorise_from_both_ends();
+                factor.factorise_and_solve(right, 0);
+            } else {
+                factor.solve_again(right, 0);
             }
-            factor.solve(right, 0);
             return;
         }
         if fresh {
@@ -158,7 +159,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             walls.for_each_held(|dof, axis, velocity, acceleration| {
                 factor.prescribe(dof, axis, pick(velocity, acceleration), right);
             });
-            factor.factorise_from_both_ends();
+            factor.factorise_and_solve(right, 0);
         } else {
             walls.for_each_held(|dof, axis, velocity, acceleration| {
                 band.move_known(dof, axis, pick(velocity, acceleration), right);
@@ -167,8 +168,8 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             walls.for_each_held(|dof, axis, velocity, acceleration| {
                 right[dof][axis] = pick(velocity, acceleration);
             });
+            factor.solve_again(right, 0);
         }
-        factor.solve(right, 0);
     }
 
     /// The same with the matrix of a lattice.

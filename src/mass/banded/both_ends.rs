@@ -13,13 +13,22 @@ use crate::scalar::Scalar;
 /// Fewest rows of a chain that another thread is worth being woken for.
 const MANY: usize = 4096;
 
-/// Rows above, between and below: the first are eliminated downwards, the last upwards, and those between, `W - 1` or one more, last.
+/// Those above, between and below: the first are eliminated downwards, the last upwards, and those between, `least` or one more, after both.
 #[inline(always)]
-fn split<T, const W: usize>(rows: &mut [T]) -> Option<[&mut [T]; 3]> {
-    let half = rows.len().checked_sub(W - 1)? / 2;
-    let (above, rest) = rows.split_at_mut(half);
+fn split<X>(items: &[X], least: usize) -> [&[X]; 3] {
+    let half = items.len().saturating_sub(least) / 2;
+    let (above, rest) = items.split_at(half);
+    let (between, below) = rest.split_at(rest.len() - half);
+    [above, between, below]
+}
+
+/// The same.
+#[inline(always)]
+fn split_mut<X>(items: &mut [X], least: usize) -> [&mut [X]; 3] {
+    let half = items.len().saturating_sub(least) / 2;
+    let (above, rest) = items.split_at_mut(half);
     let (between, below) = rest.split_at_mut(rest.len() - half);
-    Some([above, between, below])
+    [above, between, below]
 }
 
 /// Elimination downwards; the entry `(i, j)` of row `i` is at `W - 1 + j - i`.
@@ -95,36 +104,6 @@ impl<T: Scalar, const W: usize> Upwards<T, W> {
     }
 }
 
-/// `L D L^T` in place, inverse pivots on the diagonal; returns the first row that is eliminated upwards.
-pub(super) fn factorise<T: Scalar, const W: usize>(rows: &mut [T], negligible: T, parallel: bool) -> usize {
-    let (rows, _) = rows.as_chunks_mut::<W>();
-    let count = rows.len();
-    let mut down = Downwards::new();
-    let Some([above, between, below]) = split::<_, W>(rows) else {
-        rows.iter_mut().for_each(|row| down.take(row, negligible));
-        return count;
-    };
-    let parallel = parallel && above.len() >= MANY;
-    let down_above = Chain {
-        state: down,
-        items: above.iter_mut(),
-        step: |down: &mut Downwards<T, W>, row| down.take(row, negligible),
-    };
-    let up_below = Chain {
-        state: Upwards::new(),
-        items: below.iter_mut().rev(),
-        step: |up: &mut Upwards<T, W>, row| up.take(row, negligible),
-    };
-    let (mut down, up) = follow(parallel, down_above, up_below);
-    for (row, taken) in between.iter_mut().rev().zip(&up.taken[..W - 1]) {
-        for k in 0..W {
-            row[k] -= taken[k];
-        }
-    }
-    between.iter_mut().for_each(|row| down.take(row, negligible));
-    count - below.len()
-}
-
 /// Substitution away from an end, into the rows ahead, and of a row from those behind it; the nearest first.
 #[derive(Clone, Copy)]
 struct Taken<T, const W: usize>([T; W]);
@@ -161,7 +140,54 @@ impl<T: Scalar, const W: usize> Found<T, W> {
     }
 }
 
-/// Solves for component `axis` with the factors of [`factorise`].
+/// A row and its number.
+type Item<'a, T, const D: usize, const W: usize> = (&'a mut [T; W], &'a mut SVector<T, D>);
+
+/// Factorises in place, inverse pivots on the diagonal, and solves for component `axis`.
+pub(super) fn factorise_and_solve<T: Scalar, const D: usize, const W: usize>(
+    rows: &mut [T],
+    negligible: T,
+    x: &mut [SVector<T, D>],
+    axis: usize,
+    parallel: bool,
+) {
+    let (rows, _) = rows.as_chunks_mut::<W>();
+    let x = &mut x[..rows.len()];
+    let [above, between, below] = split_mut(rows, W - 1);
+    let [x_above, x_between, x_below] = split_mut(x, W - 1);
+    let (found, taken) = (Found([T::zero(); W]), Taken([T::zero(); W]));
+    let step = |(down, found): &mut (Downwards<T, W>, Found<T, W>), (row, x): Item<'_, T, D, W>| {
+        down.take(row, negligible);
+        x[axis] = found.pass(row, x[axis]);
+    };
+    let down_above = Chain {
+        state: (Downwards::new(), found),
+        items: above.iter_mut().zip(x_above),
+        step,
+    };
+    let up_below = Chain {
+        state: (Upwards::new(), taken),
+        items: below.iter_mut().zip(x_below).rev(),
+        step: |(up, taken): &mut (Upwards<T, W>, Taken<T, W>), (row, x): Item<'_, T, D, W>| {
+            up.take(row, negligible);
+            x[axis] = taken.pass(row, x[axis]);
+        },
+    };
+    let (mut down, (up, taken)) = follow(parallel, down_above, up_below);
+    let left = up.taken[..W - 1].iter().zip(taken.0);
+    for ((row, x), (entries, number)) in between.iter_mut().zip(&mut *x_between).rev().zip(left) {
+        for k in 0..W {
+            row[k] -= entries[k];
+        }
+        x[axis] -= number;
+    }
+    for item in between.iter_mut().zip(x_between) {
+        step(&mut down, item);
+    }
+    substitute(rows, x, axis, parallel);
+}
+
+/// Solves for component `axis` with the factors of [`factorise_and_solve`].
 pub(super) fn solve<T: Scalar, const D: usize, const W: usize>(
     rows: &[T],
     x: &mut [SVector<T, D>],
@@ -170,38 +196,43 @@ pub(super) fn solve<T: Scalar, const D: usize, const W: usize>(
 ) {
     let (rows, _) = rows.as_chunks::<W>();
     let x = &mut x[..rows.len()];
-    let half = rows.len().saturating_sub(W - 1) / 2;
-    let (above, rest) = rows.split_at(half);
-    let (between, below) = rest.split_at(rest.len() - half);
-    let (x_above, rest) = x.split_at_mut(half);
-    let (x_between, x_below) = rest.split_at_mut(rest.len() - half);
-    let parallel = parallel && half >= MANY;
-
+    let [above, between, below] = split(rows, W - 1);
+    let [x_above, x_between, x_below] = split_mut(x, W - 1);
     let find = |down: &mut Found<T, W>, (row, x): (&[T; W], &mut SVector<T, D>)| {
         x[axis] = down.pass(row, x[axis]);
     };
-    let take = |up: &mut Taken<T, W>, (row, x): (&[T; W], &mut SVector<T, D>)| {
-        x[axis] = up.pass(row, x[axis]);
-    };
     let down_above = Chain {
         state: Found([T::zero(); W]),
-        items: above.iter().zip(&mut *x_above),
+        items: above.iter().zip(x_above),
         step: find,
     };
     let up_below = Chain {
         state: Taken([T::zero(); W]),
-        items: below.iter().zip(&mut *x_below).rev(),
-        step: take,
+        items: below.iter().zip(x_below).rev(),
+        step: |up: &mut Taken<T, W>, (row, x): (&[T; W], &mut SVector<T, D>)| {
+            x[axis] = up.pass(row, x[axis]);
+        },
     };
     let (mut down, up) = follow(parallel, down_above, up_below);
     for (x, &taken) in x_between.iter_mut().rev().zip(&up.0[..W - 1]) {
         x[axis] -= taken;
     }
-    for item in between.iter().zip(&mut *x_between) {
+    for item in between.iter().zip(x_between) {
         find(&mut down, item);
     }
+    substitute(rows, x, axis, parallel);
+}
 
-    // And back, from the middle to both ends.
+/// Puts what is known in, from the middle to both ends.
+#[inline(always)]
+fn substitute<T: Scalar, const D: usize, const W: usize>(
+    rows: &[[T; W]],
+    x: &mut [SVector<T, D>],
+    axis: usize,
+    parallel: bool,
+) {
+    let [above, between, below] = split(rows, W - 1);
+    let [x_above, x_between, x_below] = split_mut(x, W - 1);
     let mut up = Taken([T::zero(); W]);
     for (row, x) in between.iter().zip(&mut *x_between).rev() {
         x[axis] = up.pass(row, x[axis] * row[W - 1]);
@@ -212,14 +243,14 @@ pub(super) fn solve<T: Scalar, const D: usize, const W: usize>(
     }
     let up_above = Chain {
         state: up,
-        items: above.iter().zip(&mut *x_above).rev(),
+        items: above.iter().zip(x_above).rev(),
         step: |up: &mut Taken<T, W>, (row, x): (&[T; W], &mut SVector<T, D>)| {
             x[axis] = up.pass(row, x[axis] * row[W - 1]);
         },
     };
     let down_below = Chain {
         state: down,
-        items: below.iter().zip(&mut *x_below),
+        items: below.iter().zip(x_below),
         step: |down: &mut Found<T, W>, (row, x): (&[T; W], &mut SVector<T, D>)| {
             x[axis] = down.pass(row, x[axis] * row[W - 1]);
         },
@@ -251,13 +282,13 @@ impl<S, I: Iterator, F: Fn(&mut S, I::Item)> Chain<S, I, F> {
 fn follow<S, I, F, R, J, G>(parallel: bool, first: Chain<S, I, F>, second: Chain<R, J, G>) -> (S, R)
 where
     S: Copy + Send,
-    I: Iterator + Send,
+    I: ExactSizeIterator + Send,
     F: Fn(&mut S, I::Item) + Send,
     R: Copy + Send,
     J: Iterator + Send,
     G: Fn(&mut R, J::Item) + Send,
 {
-    if parallel {
+    if parallel && first.items.len() >= MANY {
         let (mut s, mut r) = (first.state, second.state);
         let (mut first, mut second) = (Some(first), Some(second));
         both(true, &mut || s = first.take().map_or(s, Chain::last), &mut || {
