@@ -22,7 +22,7 @@ use crate::lanes::{LANES, Lanes};
 use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
 use crate::taylor::{
-    CellFit, FourSums, Gram, MOST_ALONG_ONE_AXIS, MOST_COMPONENTS, default_tolerance, taylor_functions,
+    CellFit, FEW_COMPONENTS, FourSums, Gram, MOST_COMPONENTS, are_few, default_tolerance, taylor_functions,
 };
 
 /// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor functions through
@@ -531,10 +531,10 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
     ) -> Four {
-        if D == 1 && Q::COMPONENTS == 1 {
+        if const { are_few::<T, Q, D>() && Q::COMPONENTS == 1 } {
             self.integrate_few::<V, Q, 1>(cloud, cells, conserve, value, sink)
-        } else if D == 1 {
-            self.integrate_few::<V, Q, MOST_ALONG_ONE_AXIS>(cloud, cells, conserve, value, sink)
+        } else if const { are_few::<T, Q, D>() } {
+            self.integrate_few::<V, Q, FEW_COMPONENTS>(cloud, cells, conserve, value, sink)
         } else {
             self.integrate_few::<V, Q, MOST_COMPONENTS>(cloud, cells, conserve, value, sink)
         }

@@ -8,14 +8,20 @@ use nalgebra::SVector;
 
 use super::basis::taylor_sizes;
 use super::fit::{GRAM_SHARE, ROUNDING};
+use crate::field::Field;
 use crate::lanes::{LANES, Lanes};
 use crate::scalar::Scalar;
 
 /// Most components of a field: a tensor in three dimensions.
 pub const MOST_COMPONENTS: usize = 9;
 
-/// The same along one axis: mass and momentum, or stress and pressure.
-pub(crate) const MOST_ALONG_ONE_AXIS: usize = 2;
+/// Components of the fields of a step along one axis, at most: mass and momentum.
+pub(crate) const FEW_COMPONENTS: usize = 2;
+
+/// Whether a field along one axis has no more of them: arrays are then short. A constant, so that a compiler makes no code for the other case.
+pub(crate) const fn are_few<T: Scalar, Q: Field<T>, const D: usize>() -> bool {
+    D == 1 && Q::COMPONENTS <= FEW_COMPONENTS
+}
 
 /// The Taylor functions, as [`super::taylor_functions`].
 #[inline(always)]
@@ -179,7 +185,7 @@ pub(crate) fn factorise<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>
     counts: &[usize; LANES],
     tolerance: T,
 ) -> Factored<V, NB> {
-    if D > 1 {
+    if const { D > 1 } {
         return factorise_any::<T, V, D, NB>(gram, first, counts, tolerance);
     }
     match factorise_full::<T, V, D, NB>(gram, first, counts, tolerance) {

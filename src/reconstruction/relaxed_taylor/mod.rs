@@ -20,7 +20,7 @@ use crate::field::Field;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::CELLS;
 use crate::scalar::Scalar;
-use crate::taylor::{MOST_ALONG_ONE_AXIS, MOST_COMPONENTS, default_tolerance};
+use crate::taylor::{FEW_COMPONENTS, MOST_COMPONENTS, are_few, default_tolerance};
 use cells::{Kind, RelaxedCell};
 use four::{FourFits, KeptProducts};
 use pull::Pulls;
@@ -225,8 +225,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         mut sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
     ) -> Four {
         let (group, volume) = (cells.start / LANES, cloud.grid.cell_volume());
-        if D == 1 {
-            let coefficients = self.integrated::<V, Q, MOST_ALONG_ONE_AXIS>(group);
+        if const { are_few::<T, Q, D>() } {
+            let coefficients = self.integrated::<V, Q, FEW_COMPONENTS>(group);
             self.rule
                 .emit_lanes(volume, &coefficients, Q::COMPONENTS, &mut sink);
         } else {

@@ -11,7 +11,7 @@ use crate::parallel::each_span;
 use crate::reconstruction::taylor::{CellGroup, Weighted, local};
 use crate::reconstruction::{Cloud, Crossed, Patch, Reconstruction, Stored};
 use crate::scalar::Scalar;
-use crate::taylor::{CellFit, MOST_ALONG_ONE_AXIS, MOST_COMPONENTS, Rights, factorise};
+use crate::taylor::{CellFit, FEW_COMPONENTS, MOST_COMPONENTS, Rights, are_few, factorise};
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     /// Moves the values towards the fits of their own cell and through its neighbours.
@@ -26,8 +26,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let mut pulls = std::mem::replace(&mut self.pulls, Pulls::none());
         let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
-            if D == 1 {
-                with_lanes_of!(T, self.pull_to_both_in[Q, MOST_ALONG_ONE_AXIS](crossed, first, rows));
+            if const { are_few::<T, Q, D>() } {
+                with_lanes_of!(T, self.pull_to_both_in[Q, FEW_COMPONENTS](crossed, first, rows));
             } else {
                 with_lanes_of!(T, self.pull_to_both_in[Q, MOST_COMPONENTS](crossed, first, rows));
             }
@@ -138,10 +138,10 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let mut pulls = std::mem::replace(&mut self.pulls, Pulls::none());
         let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
-            if D == 1 {
+            if const { are_few::<T, Q, D>() } {
                 with_lanes_of!(
                     T,
-                    self.pull_to_own_in[Q, MOST_ALONG_ONE_AXIS](cloud, weights, crossed, first, rows, taken)
+                    self.pull_to_own_in[Q, FEW_COMPONENTS](cloud, weights, crossed, first, rows, taken)
                 );
             } else {
                 with_lanes_of!(

@@ -12,7 +12,7 @@ use crate::reconstruction::gauss::polynomial;
 use crate::reconstruction::taylor::{CellGroup, OfValues, local};
 use crate::reconstruction::{Cloud, Patch, Point, Values};
 use crate::scalar::Scalar;
-use crate::taylor::{MOST_ALONG_ONE_AXIS, MOST_COMPONENTS, Rights, taylor_functions};
+use crate::taylor::{FEW_COMPONENTS, MOST_COMPONENTS, Rights, are_few, taylor_functions};
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     /// Sums the functions times a field over the particles of each cell.
@@ -29,8 +29,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             width: NB * Q::COMPONENTS,
         };
         each_span(self.share_groups(), super::GROUPS, work, &|first, kept| {
-            if D == 1 {
-                with_lanes_of!(T, self.sums_in[Q, _, MOST_ALONG_ONE_AXIS](cloud, first, value, kept.values));
+            if const { are_few::<T, Q, D>() } {
+                with_lanes_of!(T, self.sums_in[Q, _, FEW_COMPONENTS](cloud, first, value, kept.values));
             } else {
                 with_lanes_of!(T, self.sums_in[Q, _, MOST_COMPONENTS](cloud, first, value, kept.values));
             }

@@ -98,7 +98,7 @@ impl<const D: usize> CellGroup<D> {
         values: &impl Values<T, Q>,
         amounts: &[T],
     ) -> FourSums<V, NB, C> {
-        if D > 1 {
+        if const { D > 1 } {
             return self.sums_one_by_one::<S, T, V, Q, NB, C>(cloud, values, amounts);
         }
         match Run::all(cloud.bins, &self.numbers, cloud.positions.len()) {

@@ -39,7 +39,8 @@ impl Run {
         Some([run(cells[0])?, run(cells[1])?, run(cells[2])?, run(cells[3])?])
     }
 
-    /// Sums over the particles, which are those of `cell`, in parts that are spread over the lanes.
+    /// Sums over the particles, which are those of `cell`, in parts that are spread over the lanes. Not inlined: among all that is done
+    /// with them, a compiler would keep none of them in registers.
     #[inline(never)]
     fn sums<
         S: Sought,
@@ -136,8 +137,7 @@ fn frame<T: Scalar, V: Lanes<T>, const D: usize>(
     })
 }
 
-/// The sums of four cells, a cell in each lane. Not inlined: among all that is done with them, a compiler would keep none of them
-/// in registers.
+/// The sums of four cells, a cell in each lane.
 #[inline(always)]
 pub(super) fn sums_of_runs<
     S: Sought,

@@ -95,3 +95,28 @@ fn the_order_of_particles_does_not_matter() {
         }
     }
 }
+
+/// Short arrays hold the components of the fields of a step along one axis; a user's may have more.
+#[test]
+fn a_field_of_many_components_is_streamed_along_one_axis_too() {
+    let grid = Grid::new(vector![0.0], vector![4.0], [4]).unwrap();
+    let positions: Vec<_> = (0..20).map(|p| vector![0.2 * p as f64 + 0.07]).collect();
+    let volumes = vec![0.2; 20];
+    let bins = Bins::new(&grid, &positions).unwrap();
+    let cloud = Cloud::new(&grid, &bins, &positions, &volumes).unwrap();
+    let component = |p: usize, c: usize| (1.0 + c as f64) * positions[p][0];
+    let taylor = Taylor::<f64, 1, 3>::new();
+    let (mut single, mut all) = (Vec::new(), Vec::new());
+    for c in 0..3 {
+        let one = |p: usize| component(p, c);
+        taylor.integrate_four::<f64x4, f64>(&cloud, 0..4, false, &one, |point, value| {
+            single.push((point, c, value[0].to_array()));
+        });
+    }
+    let three = |p: usize| SVector::<f64, 3>::from_fn(|c, _| component(p, c));
+    taylor.integrate_four::<f64x4, SVector<f64, 3>>(&cloud, 0..4, false, &three, |point, value| {
+        all.extend((0..3).map(|c| (point, c, value[c].to_array())));
+    });
+    all.sort_by_key(|&(point, c, _)| (c, point));
+    assert_eq!(single, all);
+}

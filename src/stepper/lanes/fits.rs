@@ -285,7 +285,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
                 },
             );
             reduced += outcome.reduced;
-            if D == 1 && places.len() == LANES && follow(&four) && outcome.hard == [false; LANES] {
+            if const { D == 1 } && places.len() == LANES && follow(&four) && outcome.hard == [false; LANES] {
                 sums.spread_line(self, &four[0], sink);
                 if PAIRS {
                     pairs.spread_line(self, &four[0], matrix);
