@@ -58,20 +58,19 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
             return Err(GridError::TooManyCells);
         }
         let cell_size = SVector::from_fn(|a, _| (max[a] - min[a]) / T::count(cells[a]));
-        // Of a coordinate `(x - min) n / (max - min) - i` both differences, the quotient and the product round, by half an epsilon
-        // each, and of an edge `min + (max - min) i / n` the difference, the product and the quotient: seven halves of n epsilons
-        // in all. The sum rounds an edge by half an epsilon of where it is.
+        // Of a coordinate `(x - min) / h - i` the difference and the product round, and of `1 / h` the difference and both quotients,
+        // by half an epsilon each; of an edge `min + (max - min) i / n` the difference, the product and the quotient: eight halves of n
+        // epsilons in all. The sum rounds an edge by half an epsilon of where it is.
         let doubt = SVector::from_fn(|a, _| {
             let reach = (min[a].abs() + max[a].abs()) / cell_size[a];
             T::default_epsilon() * (T::lit(4.0) * T::count(cells[a]) + reach)
         });
-        let inverse_cell_size = SVector::from_fn(|a, _| T::count(cells[a]) / (max[a] - min[a]));
         Ok(Self {
             min,
             max,
             cells,
             cell_size,
-            inverse_cell_size,
+            inverse_cell_size: cell_size.map(|h| T::one() / h),
             doubt,
             window: Window::whole(cells),
         })
