@@ -70,6 +70,7 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
             max,
             cells,
             cell_size,
+            // Not n over the extent, which rounds less: patches of cells have theirs from their size, and are compared with whole ones.
             inverse_cell_size: cell_size.map(|h| T::one() / h),
             doubt,
             window: Window::whole(cells),

@@ -6,7 +6,7 @@ use nalgebra::vector;
 use super::*;
 use crate::basis::Linear;
 use crate::grid::Grid;
-use crate::particles::Bins;
+use crate::particles::{Bins, lattice};
 
 /// By a wave; the particles rest.
 fn crossed(wave: f64) -> Crossed<f64> {
@@ -102,6 +102,23 @@ fn cells_alone_are_relaxed_as_four_at_once() {
         // The body ends within the outer cells, which are of another size alone.
         for p in per_cell..4 * per_cell {
             assert_relative_eq!(four[p], alone[p], epsilon = 1e-11);
+        }
+    }
+}
+
+/// A cell that material ends in is told from a whole one by comparing patches: no rounding may make the two differ.
+#[test]
+fn no_cell_of_a_full_box_counts_as_ended_within() {
+    for cells in [47, 49, 98, 105, 107] {
+        let grid = Grid::<f64, 2>::new(vector![0.0, 0.0], vector![1.0, 1.0], [cells; 2]).unwrap();
+        let points = lattice(&grid, grid.min(), grid.max(), [3, 3]);
+        let (positions, volumes): (Vec<_>, Vec<_>) = points.into_iter().unzip();
+        let bins = Bins::new(&grid, &positions).unwrap();
+        let cloud = Cloud::new(&grid, &bins, &positions, &volumes).unwrap();
+        let mut fit = RelaxedTaylor::<f64, 2, 6>::for_degree(2);
+        fit.prepare(&cloud);
+        for place in 0..cells * cells {
+            assert_eq!(fit.filling(place), Filling::Full, "{cells}");
         }
     }
 }
