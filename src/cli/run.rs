@@ -160,8 +160,11 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         ));
     }
     for (phase, errors) in conservation {
+        let impulse = errors.impulse.map_or(String::new(), |error| {
+            format!(", change against impulse {error:.1e}")
+        });
         lines.push(format!(
-            "  {phase:<width$} conservation error: mass {:.1e}, momentum {:.1e} ({:.1e} of sum m|v|)",
+            "  {phase:<width$} conservation error: mass {:.1e}, momentum {:.1e} ({:.1e} of sum m|v|){impulse}",
             errors.mass, errors.momentum, errors.momentum_scaled
         ));
     }
@@ -179,6 +182,11 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
             "  energy        {:.6e} {unit} at the end; none at the start",
             energy.last
         )),
+    }
+    if let (Some(work), Some(gain)) = (energy.wall_work, energy.wall_gain) {
+        lines.push(format!(
+            "  walls         did {work:.6e} {unit} of work on the bodies, at most {gain:.1e} {unit} against friction in a step"
+        ));
     }
     for file in files {
         lines.push(format!("  wrote         {}", file.display()));

@@ -89,6 +89,14 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
+    /// Component `axis` of row `c` times `x`.
+    pub(crate) fn row_product<const D: usize>(&self, c: usize, axis: usize, x: &[SVector<T, D>]) -> T {
+        let columns = c.saturating_sub(self.half_band)..(c + self.half_band + 1).min(self.order);
+        columns.fold(T::zero(), |sum, j| {
+            sum + self.rows[self.at(c.max(j), c.min(j))] * x[j][axis]
+        })
+    }
+
     /// Prescribes component `axis` of unknown `c`: moves its known part to the right-hand side and replaces its
     /// equation by `x_c = value`.
     pub fn prescribe<const D: usize>(

@@ -22,8 +22,16 @@ pub(super) fn forcing<const D: usize>(
             BoundaryKind::Free => FaceCondition::Free,
             BoundaryKind::Fixed => FaceCondition::fixed(),
             BoundaryKind::Roller => FaceCondition::roller(boundary.face.axis),
-            BoundaryKind::Frictional(coefficient) => FaceCondition::Frictional {
+            BoundaryKind::Frictional {
+                coefficient,
+                velocity,
+            } => FaceCondition::Frictional {
                 coefficient: *coefficient,
+                velocity: match velocity {
+                    // The walls act on the velocity in the middle of the step.
+                    Some(velocity) => vector(velocity, time + dt / 2.0)?,
+                    None => SVector::zeros(),
+                },
             },
             BoundaryKind::Velocity(velocity) => {
                 let (before, after) = ((time - dt / 2.0).max(0.0), time + dt / 2.0);

@@ -68,18 +68,14 @@ impl Default for EnergyRange {
 }
 
 impl EnergyRange {
-    /// The energy is the error if it is not finite.
-    fn sample(&mut self, energy: f64) -> Result<(), f64> {
-        if !energy.is_finite() {
-            return Err(energy);
-        }
+    /// Takes in an energy, which is finite.
+    fn sample(&mut self, energy: f64) {
         if self.initial.is_nan() {
             self.initial = energy;
         }
         self.last = energy;
         self.highest = self.highest.max(energy);
         self.lowest = self.lowest.min(energy);
-        Ok(())
     }
 }
 
@@ -129,8 +125,7 @@ where
     };
     // A resumed run has begun already; one that has nothing left to do may end earlier than it was to.
     if from.done == 0 || from.done == steps {
-        let start = march.energy.sample(simulation.energy().total());
-        start.map_err(|value| RunError::NoEnergyAtStart { value })?;
+        start_energy(simulation, &mut march, from.done == steps)?;
     }
     if from.done == 0 && frames.begin_at_start() {
         frames.write(Some(0), 0.0, &simulation.particles(), &simulation.liquid())?;
@@ -147,22 +142,35 @@ where
         if let Some(driver) = &driver {
             simulation.set_body_forces(&|x| driver.body_force(x, schedule.time(step)));
         }
-        if let Err(source) = simulation.step(dt, &forcing) {
-            let (critical, remedy) = limit::<D>(scene);
-            return Err(RunError::Stopped {
-                source,
-                dt,
-                critical,
-                remedy,
-            });
-        }
-        march.steps += 1;
         let done = step + 1;
         let due = journey.due(done);
+        // The energy of a step is that at its start, the first one's that at the start of the run.
+        let measured = match due.sample || step == 0 {
+            true => simulation.step_and_measure(dt, &forcing).map(Some),
+            false => simulation.step(dt, &forcing).map(|()| None),
+        };
+        let energy = match measured {
+            Ok(energy) => energy,
+            Err(source) => {
+                let (critical, remedy) = limit::<D>(scene);
+                return Err(RunError::Stopped {
+                    source,
+                    dt,
+                    critical,
+                    remedy,
+                });
+            }
+        };
+        march.steps += 1;
+        if let Some(energy) = energy {
+            take_energy(scene, energy.total(), &mut march, (done, dt))?;
+        }
         if due.sample || due.checkpoint {
             // The clock runs for the step loop only.
             march.wall += begun.elapsed();
-            check_energy(scene, simulation, &mut march, &due, (done, dt))?;
+            if due.checkpoint {
+                refuse_no_energy(scene, simulation.energy().total(), (done, dt))?;
+            }
             if due.frame && frames.are_wanted() {
                 let (particles, liquid) = (simulation.particles(), simulation.liquid());
                 frames.write(Some(done), schedule.time(done), &particles, &liquid)?;
@@ -179,23 +187,47 @@ where
     Ok(march)
 }
 
-/// Samples the energy if that is due. A checkpoint needs one too: of numbers that are none nothing good comes.
-fn check_energy<const D: usize>(
-    scene: &Scene,
+/// Refuses a start whose energy is no number; if no step follows, it is the run's.
+fn start_energy<const D: usize>(
     simulation: &dyn Simulation<D>,
     march: &mut March,
-    due: &Due,
+    is_end: bool,
+) -> Result<(), RunError> {
+    let value = simulation.energy().total();
+    if !value.is_finite() {
+        return Err(RunError::NoEnergyAtStart { value });
+    }
+    if is_end && march.energy.initial.is_nan() {
+        march.energy.sample(value);
+    }
+    Ok(())
+}
+
+/// Takes in a sample of the energy.
+fn take_energy<const D: usize>(
+    scene: &Scene,
+    value: f64,
+    march: &mut March,
+    at: (usize, f64),
+) -> Result<(), RunError>
+where
+    Scene: InSpace<D>,
+{
+    refuse_no_energy(scene, value, at)?;
+    march.energy.sample(value);
+    Ok(())
+}
+
+/// Refuses an energy that is no number: of such a state nothing good comes.
+fn refuse_no_energy<const D: usize>(
+    scene: &Scene,
+    value: f64,
     (step, dt): (usize, f64),
 ) -> Result<(), RunError>
 where
     Scene: InSpace<D>,
 {
-    let value = simulation.energy().total();
-    let fine = match due.sample {
-        true => march.energy.sample(value).is_ok(),
-        false => value.is_finite(),
-    };
-    if fine {
+    if value.is_finite() {
         return Ok(());
     }
     let (critical, remedy) = limit::<D>(scene);

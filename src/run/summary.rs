@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::march::March;
 use super::norms::ErrorNorms;
 use super::schedule::Schedule;
-use crate::scene::{ScalarKind, Scene};
+use crate::scene::{Boundary, ScalarKind, Scene};
 use crate::stepper::{Conservation, Simulation};
 
 /// The method and the model of a run, by name.
@@ -66,6 +66,10 @@ pub struct ConservationSummary {
     pub momentum: f64,
     /// Relative to the sum of m |v|.
     pub momentum_scaled: f64,
+    /// Change of momentum in a step against the impulse of loads, held faces and walls: see
+    /// [`Conservation::impulse`](crate::stepper::Conservation::impulse). Absent where a liquid flows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impulse: Option<f64>,
 }
 
 impl From<Conservation<f64>> for ConservationSummary {
@@ -74,16 +78,18 @@ impl From<Conservation<f64>> for ConservationSummary {
             mass: errors.mass,
             momentum: errors.momentum,
             momentum_scaled: errors.momentum_scaled,
+            impulse: Some(errors.impulse),
         }
     }
 }
 
-/// Kinetic plus strain energy of a run; ratios to the initial one, absent where that is zero or next to it.
+/// Kinetic plus strain energy of a run, each sample at one time, the start of a step
+/// ([`Simulation::step_and_measure`]); ratios to the initial one, absent where that is zero or next to it.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct EnergySummary {
     /// At the start (J; in one dimension J/m2, in two J/m).
     pub initial: f64,
-    /// At the end (J; in one dimension J/m2, in two J/m).
+    /// At the start of the last step (J; in one dimension J/m2, in two J/m).
     #[serde(rename = "final")]
     pub last: f64,
     /// Highest over initial.
@@ -92,6 +98,12 @@ pub struct EnergySummary {
     /// Lowest over initial.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lowest_ratio: Option<f64>,
+    /// Work of walls that rub on the bodies (J), absent where none does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wall_work: Option<f64>,
+    /// Most work (J) that they did in one step beside that of their own motion; zero unless something is wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wall_gain: Option<f64>,
 }
 
 /// Figures of a run.
@@ -155,9 +167,14 @@ impl Summary {
         let liquid = diagnostics.liquid_conservation;
         let conservation = [("solid", Some(diagnostics.conservation)), ("liquid", liquid)]
             .into_iter()
-            .filter_map(|(phase, errors)| Some((phase, errors?.into())))
+            .filter_map(|(phase, errors)| {
+                let mut errors = ConservationSummary::from(errors?);
+                errors.impulse = errors.impulse.filter(|_| liquid.is_none());
+                Some((phase, errors))
+            })
             .collect();
         let energy = march.energy;
+        let rubs = scene.boundaries.iter().any(Boundary::rubs);
         // Of next to nothing nothing is a finite multiple.
         let ratio = |value: f64| Some(value / energy.initial).filter(|ratio| ratio.is_finite());
         Self {
@@ -182,6 +199,8 @@ impl Summary {
                 last: energy.last,
                 highest_ratio: ratio(energy.highest),
                 lowest_ratio: ratio(energy.lowest),
+                wall_work: rubs.then_some(diagnostics.wall_work),
+                wall_gain: rubs.then_some(diagnostics.wall_gain),
             },
             warnings: Vec::new(),
         }

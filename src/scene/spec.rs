@@ -310,8 +310,13 @@ pub enum BoundaryKind {
     Fixed,
     /// The material slides along the grid's face without friction and stays at it.
     Roller,
-    /// A wall at the grid's face that nothing passes and that lets go, with this coefficient of friction, not negative.
-    Frictional(f64),
+    /// A wall at the grid's face that nothing passes, that lets go and rubs.
+    Frictional {
+        /// Coefficient of friction, not negative.
+        coefficient: f64,
+        /// Velocity of the wall (m/s), in `t`; one expression per axis. At rest unless told.
+        velocity: Option<Vec<Expression>>,
+    },
     /// The grid's face moves with this velocity (m/s), in `t`; one expression per axis.
     Velocity(Vec<Expression>),
     /// The bodies' surface that looks towards the face bears this force per area (Pa), in `t`; one expression
@@ -350,6 +355,11 @@ impl Boundary {
             self.kind,
             BoundaryKind::Fixed | BoundaryKind::Roller | BoundaryKind::Velocity(_)
         )
+    }
+
+    /// Whether it is a wall that rubs, and lets go.
+    pub fn rubs(&self) -> bool {
+        matches!(self.kind, BoundaryKind::Frictional { .. })
     }
 
     /// Whether liquid passes.

@@ -31,10 +31,7 @@ where
                 };
             }
         }
-        let force = &mut self.dofs.force;
-        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, acceleration| {
-            force[dof][axis] = acceleration;
-        });
+        self.hold_accelerations(forcing);
     }
 
     /// `M a = f + m b` with the particles' matrix.
@@ -42,10 +39,12 @@ where
         for (force, &mass) in self.dofs.force.iter_mut().zip(&self.dofs.mass) {
             *force += forcing.body_force * mass;
         }
+        self.note_loads_on_held(forcing);
         let pick = |_, acceleration| acceleration;
         let walls = Walls::of_solid(&self.face_dofs, forcing);
         self.dofs
             .solve(Unknown::Acceleration, self.velocity_mass, &walls, true, pick);
+        self.note_inertia_of_held(forcing);
     }
 }
 

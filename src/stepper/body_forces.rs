@@ -30,9 +30,11 @@ where
     /// `f_i += sum_p m_p b_p phi_i(x_p)`.
     pub(super) fn add_body_forces(&mut self) {
         let (basis, grid, force) = (&self.basis, &self.grid, &mut self.dofs.force);
+        let load = &mut self.balance.load;
         let particles = self.particles.mass.iter().zip(&self.particles.position);
         for (place, ((&mass, x), cell)) in particles.zip(self.bins.cells()).enumerate() {
             let weight = self.body_forces[self.order.number(place)] * mass;
+            *load += weight;
             basis.for_each(grid, cell, x, |i, phi, _| force[i] += weight * phi);
         }
     }

@@ -210,7 +210,7 @@ where
 }
 
 /// The same constraints with every told value zero, and no load.
-fn at_rest<T: Scalar, const D: usize>(forcing: &Forcing<T, D>) -> Forcing<T, D> {
+pub(super) fn at_rest<T: Scalar, const D: usize>(forcing: &Forcing<T, D>) -> Forcing<T, D> {
     let mut rest = Forcing::none();
     for face in Face::all::<D>() {
         if let FaceCondition::Held { held, .. } = *forcing.face(face) {

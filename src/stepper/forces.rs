@@ -214,6 +214,7 @@ where
             let x = self.surface_position(point);
             let cell = self.bins.cell_of(point.particle);
             let load = traction * point.area;
+            self.balance.load += load;
             let force = &mut self.dofs.force;
             self.basis
                 .for_each(&self.grid, cell, &x, |i, phi, _| force[i] += load * phi);

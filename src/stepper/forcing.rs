@@ -25,6 +25,9 @@ pub enum FaceCondition<T, const D: usize> {
     Frictional {
         /// Coefficient of friction, not negative; 0 is a smooth wall.
         coefficient: T,
+        /// Velocity of the wall (m/s). Its place stays the grid's face: a wall may run along itself, or push by a small part of
+        /// a cell.
+        velocity: SVector<T, D>,
     },
     /// Force per area (Pa) on the bodies' surface that looks towards the face ([`SurfacePoint`]).
     Traction(SVector<T, D>),
@@ -42,6 +45,14 @@ impl<T: Scalar, const D: usize> FaceCondition<T, D> {
             held: std::array::from_fn(|a| a == axis),
             velocity: SVector::zeros(),
             acceleration: SVector::zeros(),
+        }
+    }
+
+    /// A wall at rest that nothing passes, that lets go, and along which material slides with this coefficient of friction.
+    pub fn frictional(coefficient: T) -> Self {
+        Self::Frictional {
+            coefficient,
+            velocity: SVector::zeros(),
         }
     }
 

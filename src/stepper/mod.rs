@@ -16,6 +16,7 @@
 
 mod acceleration;
 mod advance;
+mod balance;
 mod body_forces;
 mod by_four;
 mod cell_sums;
@@ -123,6 +124,11 @@ where
     crossed: Vec<Crossed<T>>,
     /// Stresses as the relaxation would have them; empty but for laws that remember.
     relaxed: Vec<SMatrix<T, D, D>>,
+    balance: balance::Balance<T, D>,
+    /// Velocities before a step whose energy is measured: of particles, and of their liquid.
+    before: [Vec<SVector<T, D>>; 2],
+    /// Contact with walls that rub.
+    contact: contact::WallContact<T, D>,
     /// What the particles of a cell add to their matrix.
     pairs: Pairs<T, D>,
     /// Force per mass of each particle; empty where there is none but the uniform one.
@@ -221,6 +227,9 @@ where
             strayed: false,
             crossed: Vec::with_capacity(crossed_count),
             relaxed: vec![SMatrix::zeros(); relaxed_count],
+            balance: balance::Balance::none(),
+            before: [Vec::new(), Vec::new()],
+            contact: contact::WallContact::none(),
             pairs: Pairs::new(R::PARTICLE_MATRIX || sums_matrix),
             body_forces: Vec::new(),
             face_dofs: Vec::new(),
@@ -239,6 +248,7 @@ where
 
     /// Makes the DOFs of the grid's window.
     fn allocate_dofs(&mut self) {
+        self.contact.forget();
         let (basis, grid) = (&self.basis, &self.grid);
         let own_mass = (!R::AMOUNTS_AT_PARTICLES || R::PARTICLE_MATRIX).then_some(self.velocity_mass);
         self.dofs = Dofs::new(basis, grid, own_mass, R::PARTICLE_MATRIX);
@@ -287,20 +297,43 @@ where
     /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the law. The particles then hold the
     /// state in which that was noticed.
     pub fn step(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
-        if !dt.is_finite() || dt <= T::zero() {
-            return Err(StepError::StepSize { value: dt.primal() });
-        }
+        check_size(dt)?;
         self.prepare();
+        self.kick(dt, forcing);
+        self.drift(dt)
+    }
+
+    /// The same, and the energy at the step's start: see [`Energy`].
+    ///
+    /// # Errors
+    /// As those of [`Stepper::step`].
+    pub fn step_and_measure(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<Energy<T>, StepError> {
+        check_size(dt)?;
+        self.prepare();
+        let strain = self.strain_energy();
+        self.keep_velocities();
+        self.kick(dt, forcing);
+        let kinetic = self.kinetic_energy_across();
+        self.drift(dt)?;
+        Ok(Energy { kinetic, strain })
+    }
+
+    /// Velocities of particles and DOFs.
+    fn kick(&mut self, dt: T, forcing: &Forcing<T, D>) {
         if P::FLOWS {
             self.assemble_both(forcing);
             self.accelerate_both(dt, forcing);
             self.update_both_velocities(dt, forcing);
         } else {
+            self.begin_balance();
             self.assemble(forcing);
             self.accelerate(forcing);
-            self.stop_at_walls(dt, forcing);
             self.update_velocities(dt, forcing);
         }
+    }
+
+    /// Positions, strains and stresses of the particles.
+    fn drift(&mut self, dt: T) -> Result<(), StepError> {
         self.steps += 1;
         self.time += dt;
         if P::FLOWS {
@@ -466,6 +499,8 @@ where
             + self.liquid.bytes()
             + self.spans.bytes()
             + self.pairs.bytes()
+            + self.contact.bytes()
+            + size_of::<SVector<T, D>>() * self.before.iter().map(Vec::capacity).sum::<usize>()
             + size_of::<Crossed<T>>() * self.crossed.capacity()
             + size_of::<SMatrix<T, D, D>>() * self.relaxed.capacity()
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()
@@ -477,6 +512,13 @@ where
     pub fn bytes_per_particle(&self) -> f64 {
         self.bytes() as f64 / self.particles.len() as f64
     }
+}
+
+fn check_size<T: Scalar>(dt: T) -> Result<(), StepError> {
+    if !dt.is_finite() || dt <= T::zero() {
+        return Err(StepError::StepSize { value: dt.primal() });
+    }
+    Ok(())
 }
 
 /// Refuses a particle whose stress has no meaning to the law.

@@ -25,6 +25,12 @@ pub trait Simulation<const D: usize> {
     /// As there.
     fn step(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError>;
 
+    /// See [`Stepper::step_and_measure`].
+    ///
+    /// # Errors
+    /// As there.
+    fn step_and_measure(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<Energy<f64>, StepError>;
+
     /// See [`Stepper::set_body_forces`].
     fn set_body_forces(&mut self, force: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>);
 
@@ -86,6 +92,11 @@ where
         self.step(T::lit(dt), &cast_forcing(forcing))
     }
 
+    fn step_and_measure(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<Energy<f64>, StepError> {
+        let energy = self.step_and_measure(T::lit(dt), &cast_forcing(forcing))?;
+        Ok(cast_energy(&energy))
+    }
+
     fn set_body_forces(&mut self, force: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>) {
         self.set_body_forces(|x| force(&x.map(T::primal)).map(T::lit));
     }
@@ -128,6 +139,8 @@ where
             reduced_cells,
             virtual_cells,
             total_mass,
+            wall_work,
+            wall_gain,
         } = self.diagnostics;
         Diagnostics {
             conservation: cast_conservation(&conservation),
@@ -136,15 +149,13 @@ where
             reduced_cells,
             virtual_cells,
             total_mass: total_mass.primal(),
+            wall_work: wall_work.primal(),
+            wall_gain: wall_gain.primal(),
         }
     }
 
     fn energy(&self) -> Energy<f64> {
-        let Energy { kinetic, strain } = self.energy();
-        Energy {
-            kinetic: kinetic.primal(),
-            strain: strain.primal(),
-        }
+        cast_energy(&self.energy())
     }
 
     fn critical_step(&self, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>> {
@@ -176,6 +187,13 @@ where
     }
 }
 
+fn cast_energy<T: Scalar>(energy: &Energy<T>) -> Energy<f64> {
+    Energy {
+        kinetic: energy.kinetic.primal(),
+        strain: energy.strain.primal(),
+    }
+}
+
 fn cast_critical<T: Scalar>(critical: CriticalStep<T>) -> CriticalStep<f64> {
     let CriticalStep { step, mechanism } = critical;
     let step = step.primal();
@@ -187,6 +205,7 @@ fn cast_conservation<T: Scalar>(errors: &Conservation<T>) -> Conservation<f64> {
         mass: errors.mass.primal(),
         momentum: errors.momentum.primal(),
         momentum_scaled: errors.momentum_scaled.primal(),
+        impulse: errors.impulse.primal(),
     }
 }
 
@@ -196,8 +215,12 @@ fn cast_forcing<T: Scalar, const D: usize>(forcing: &Forcing<f64, D>) -> Forcing
     for face in Face::all::<D>() {
         let condition = match forcing.face(face) {
             FaceCondition::Free => FaceCondition::Free,
-            FaceCondition::Frictional { coefficient } => FaceCondition::Frictional {
+            FaceCondition::Frictional {
+                coefficient,
+                velocity,
+            } => FaceCondition::Frictional {
                 coefficient: T::lit(*coefficient),
+                velocity: cast(velocity),
             },
             FaceCondition::Traction(traction) => FaceCondition::Traction(cast(traction)),
             FaceCondition::Held {

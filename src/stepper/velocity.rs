@@ -39,9 +39,10 @@ where
             (sums, self.map_momentum())
         };
         self.diagnostics.record(&sums, mapped);
+        self.balance_momentum(dt, forcing, &sums);
         // The particles' matrix is the one that the accelerations were solved with.
         self.divide_by_mass(forcing, !R::PARTICLE_MATRIX);
-        self.slide_along_walls(forcing);
+        self.meet_walls(forcing);
     }
 
     /// `v_p += dt sum_i phi_i(x_p) a_i`; returns the particles' momentum.

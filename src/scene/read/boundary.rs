@@ -73,6 +73,11 @@ fn kind(
     if found.is_empty() && !section.present(&TWO_PHASE_KEYS).is_empty() {
         return Ok(BoundaryKind::Free);
     }
+    // A wall that rubs may move.
+    let found = match found.as_slice() {
+        ["friction", "velocity"] => vec!["friction"],
+        _ => found,
+    };
     let [kind] = found.as_slice() else {
         let found = match found.is_empty() {
             true => "none of them".to_string(),
@@ -98,7 +103,12 @@ fn kind(
         "friction" => {
             let expected = "a coefficient of friction, 0 or more";
             let coefficient = item.number_where(expected, |coefficient| coefficient >= 0.0)?;
-            Ok(BoundaryKind::Frictional(coefficient))
+            let velocity = section.optional("velocity");
+            let velocity = velocity.map(|item| in_time(&item, dimension, end)).transpose()?;
+            Ok(BoundaryKind::Frictional {
+                coefficient,
+                velocity,
+            })
         }
         "velocity" => Ok(BoundaryKind::Velocity(in_time(&item, dimension, end)?)),
         _ => Ok(BoundaryKind::Traction(in_time(&item, dimension, end)?)),

@@ -7,7 +7,7 @@
 //! * the window of cells that have numbers, and whether it is to be laid anew ([`super::window`]);
 //! * their first numbers, and how many have changed their cells since they were put in order;
 //! * how sums are cut into spans, which the cells of earlier steps decide ([`spans`]);
-//! * time, steps, diagnostics.
+//! * time, steps, diagnostics, the momentum after the last step.
 //!
 //! Not saved is what follows from the [`Setup`](super::Setup) (grid, law, phase, DOFs of the faces) or is made anew before it is
 //! used: basis and reconstruction take in where the particles are at the start of a step, as the lists of the cells and the cuts
@@ -19,6 +19,8 @@ mod particles;
 mod spans;
 
 use std::io::{self, Read, Write};
+
+use nalgebra::SVector;
 
 use super::{Conservation, Diagnostics, Stepper};
 use crate::basis::BasisFamily;
@@ -55,6 +57,8 @@ where
         out.numbers(&[self.time])?;
         out.count(self.steps)?;
         self.diagnostics.save(&mut out)?;
+        out.flag(self.balance.momentum.is_some())?;
+        out.numbers(self.balance.momentum.unwrap_or_else(SVector::zeros).as_slice())?;
         self.particles.save(&mut out)?;
         for point in &self.surface {
             out.count(point.particle)?;
@@ -79,6 +83,10 @@ where
         from.numbers(std::slice::from_mut(&mut self.time))?;
         self.steps = from.count()?;
         self.diagnostics.restore(&mut from)?;
+        let known = from.flag()?;
+        let mut momentum = SVector::<T, D>::zeros();
+        from.numbers(momentum.as_mut_slice())?;
+        self.balance.momentum = known.then_some(momentum);
         self.particles.restore(&mut from)?;
         let count = self.particles.len();
         for (index, point) in self.surface.iter_mut().enumerate() {
@@ -157,6 +165,8 @@ impl<T: Scalar> Diagnostics<T> {
             grid_crossings,
             reduced_cells,
             virtual_cells,
+            wall_work,
+            wall_gain,
             // Of the setup, as whether a liquid flows.
             total_mass: _,
         } = self;
@@ -164,28 +174,37 @@ impl<T: Scalar> Diagnostics<T> {
             .into_iter()
             .flatten()
         {
-            out.numbers(&[errors.mass, errors.momentum, errors.momentum_scaled])?;
+            out.numbers(&[
+                errors.mass,
+                errors.momentum,
+                errors.momentum_scaled,
+                errors.impulse,
+            ])?;
         }
         out.count(*grid_crossings)?;
         out.count(*reduced_cells)?;
-        out.count(*virtual_cells)
+        out.count(*virtual_cells)?;
+        out.numbers(&[*wall_work, *wall_gain])
     }
 
     fn restore(&mut self, from: &mut In<'_>) -> Result<(), RestoreError> {
         let both = [Some(&mut self.conservation), self.liquid_conservation.as_mut()];
         for errors in both.into_iter().flatten() {
-            let mut found = [T::zero(); 3];
+            let mut found = [T::zero(); 4];
             from.numbers(&mut found)?;
-            let [mass, momentum, momentum_scaled] = found;
+            let [mass, momentum, momentum_scaled, impulse] = found;
             *errors = Conservation {
                 mass,
                 momentum,
                 momentum_scaled,
+                impulse,
             };
         }
         self.grid_crossings = from.count()?;
         self.reduced_cells = from.count()?;
         self.virtual_cells = from.count()?;
+        from.numbers(std::slice::from_mut(&mut self.wall_work))?;
+        from.numbers(std::slice::from_mut(&mut self.wall_gain))?;
         Ok(())
     }
 }

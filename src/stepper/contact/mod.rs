@@ -1,0 +1,291 @@
+//! Contact with walls that let go and rub: Signorini's conditions and Coulomb's friction at the DOFs on a face of the grid.
+//!
+//! A step maps particle velocities to the DOFs by `v = P v_p`, for particle sums `P = N Phi^T M` with the particle masses `M`, the
+//! shape functions `Phi` and the inverse mass `N` of the DOFs. The wall acts by *one* impulse `R` at its DOFs, which changes
+//! the particles by `Phi N R` and so the mapped velocities by `W R`, `W = P Phi N`. It is solved for such that the velocity which
+//! then moves and strains the particles obeys the contact law, and nothing is corrected after that.
+//!
+//! For particle sums, and for the consistent mass of the particles, `Phi N = M^-1 P^T`, so that the particles' kinetic energy
+//! changes by `R . v - R . W R / 2` with `v` the velocity after it. There `R_n v_n = 0`, `R_t . v_t <= 0`, and `W` has no
+//! negative eigenvalue: a wall at rest never does positive work, whatever the step, the basis and the motion, and since strains
+//! come from that same `v` no strain energy passes it either. (Asked twice, before and after the particles' update, a wall may
+//! hold a DOF in the first pass and let it go in the second; it then does the work of the force that it cancelled.)
+//!
+//! A DOF is in contact where a particle that it sees has its surface within [`CLOSED`] of a cell from the wall. Otherwise
+//! material would stop as soon as it enters the cell at the wall.
+//!
+//! Particle sums give `W = N S N`, `S_ij = sum_p m_p phi_i phi_j` ([`sums`]). Any other mapping (fits of densities, a
+//! consistent mass) is asked for its own `W` by impulses at DOFs far enough apart, and the solution is corrected with the mapping
+//! itself until the law holds ([`mapping`]). With published TLS, whose forces are not adjoint to its mapping, the proof above
+//! does not hold, although the law is obeyed as exactly.
+
+mod delassus;
+mod mapping;
+mod solve;
+mod sums;
+mod wall;
+
+use nalgebra::SVector;
+
+use super::acceleration::Walls;
+use super::{Forcing, Stepper};
+use crate::basis::BasisFamily;
+use crate::law::ConstitutiveLaw;
+use crate::phase::Phase;
+use crate::reconstruction::Reconstruction;
+use crate::scalar::Scalar;
+use delassus::Delassus;
+use wall::{Wall, WallDofs};
+
+/// Distance of a particle's surface from a wall, in cells, below which they touch.
+const CLOSED: f64 = 0.02;
+
+/// What contact with walls needs; nothing where none rubs.
+#[derive(Clone, Debug)]
+pub(super) struct WallContact<T, const D: usize> {
+    dofs: WallDofs<T, D>,
+    delassus: Delassus<T, D>,
+    /// Particles that see a DOF on a wall.
+    near: Vec<u32>,
+    /// Contacts that are closed.
+    closed: Vec<u32>,
+    /// Of the DOFs on walls: inverse masses by component, velocities (m/s), impulses (N s).
+    inverse: Vec<SVector<T, D>>,
+    velocity: Vec<SVector<T, D>>,
+    impulse: Vec<SVector<T, D>>,
+    /// Of all DOFs: what is to be added to them.
+    gain: Vec<SVector<T, D>>,
+    /// Of all DOFs and particles, where the mapping is no particle sum: velocities so far, and changes of velocity.
+    reached: Vec<SVector<T, D>>,
+    kicks: Vec<SVector<T, D>>,
+}
+
+/// What the walls did to the particles in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WallAction<T, const D: usize> {
+    /// Change of their momentum (N s).
+    pub(super) impulse: SVector<T, D>,
+    /// Change of their kinetic energy (J).
+    pub(super) work: T,
+    /// Of that what the walls' own motion gave (J).
+    pub(super) drive: T,
+}
+
+impl<T: Scalar, const D: usize> WallAction<T, D> {
+    fn none() -> Self {
+        Self {
+            impulse: SVector::zeros(),
+            work: T::zero(),
+            drive: T::zero(),
+        }
+    }
+
+    /// Adds the change `by` of the velocity of a particle.
+    #[inline(always)]
+    fn add(&mut self, mass: T, velocity: &SVector<T, D>, by: &SVector<T, D>) {
+        let half = T::one() / T::lit(2.0);
+        self.impulse += by * mass;
+        self.work += (velocity + by * half).dot(by) * mass;
+    }
+}
+
+impl<T: Scalar, const D: usize> WallContact<T, D> {
+    pub(super) fn none() -> Self {
+        Self {
+            dofs: WallDofs::none(),
+            delassus: Delassus::none(),
+            near: Vec::new(),
+            closed: Vec::new(),
+            inverse: Vec::new(),
+            velocity: Vec::new(),
+            impulse: Vec::new(),
+            gain: Vec::new(),
+            reached: Vec::new(),
+            kicks: Vec::new(),
+        }
+    }
+
+    /// DOFs have other numbers now.
+    pub(super) fn forget(&mut self) {
+        self.dofs.forget();
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        let vectors = [
+            &self.inverse,
+            &self.velocity,
+            &self.impulse,
+            &self.gain,
+            &self.reached,
+            &self.kicks,
+        ];
+        size_of::<SVector<T, D>>() * vectors.map(Vec::capacity).iter().sum::<usize>()
+            + size_of::<u32>() * (self.near.capacity() + self.closed.capacity())
+            + self.dofs.bytes()
+            + self.delassus.bytes()
+    }
+
+    /// Greatest velocity (m/s) of a closed contact relative to its wall.
+    fn scale(&self) -> T {
+        let contacts = self.closed.iter().map(|&k| &self.dofs.contacts[k as usize]);
+        contacts
+            .map(|contact| (self.velocity[contact.place] - contact.wall.velocity).norm())
+            .fold(T::zero(), T::max)
+    }
+
+    /// Takes in the velocities of all DOFs.
+    fn read(&mut self, velocities: &[SVector<T, D>]) {
+        for (own, &dof) in self.velocity.iter_mut().zip(&self.dofs.dofs) {
+            *own = velocities[dof as usize];
+        }
+    }
+
+    /// Adds up the impulses of the contacts of each DOF.
+    fn add_up_impulses(&mut self) {
+        self.impulse.fill(SVector::zeros());
+        for contact in &self.dofs.contacts {
+            self.impulse[contact.place] += contact.impulse();
+        }
+    }
+
+    /// Work (J) of the impulses on walls that move.
+    fn drive(&self) -> T {
+        let contacts = self.dofs.contacts.iter();
+        contacts.fold(T::zero(), |sum, contact| {
+            sum + contact.impulse().dot(&contact.wall.velocity)
+        })
+    }
+}
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    /// Lets the walls act on particles and DOFs, whose velocities are those that the step would have without them.
+    pub(super) fn meet_walls(&mut self, forcing: &Forcing<T, D>) {
+        if Wall::all(forcing).next().is_none() {
+            return;
+        }
+        let by_sums = const { R::AMOUNTS_AT_PARTICLES && !R::PARTICLE_MATRIX };
+        if !self.contact.dofs.fit(forcing, self.dofs.mass.len()) {
+            self.lay_walls(forcing, by_sums);
+        }
+        self.contact.dofs.begin(forcing);
+        self.find_contacts(forcing);
+        self.contact.read(&self.dofs.velocity);
+        let scale = self.contact.scale();
+        if scale <= T::zero() {
+            return;
+        }
+        let mut action = match by_sums {
+            true => self.push_by_sums(scale),
+            false => self.push_by_mapping(forcing, scale),
+        };
+        let velocities = &mut self.dofs.velocity;
+        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, velocity, _| {
+            velocities[dof][axis] = velocity;
+        });
+        action.drive = self.contact.drive();
+        if let Some(momentum) = &mut self.balance.momentum {
+            *momentum += action.impulse;
+        }
+        self.diagnostics.record_walls(&action);
+    }
+
+    /// Allocates what the walls that rub in this step need.
+    #[cold]
+    #[inline(never)]
+    fn lay_walls(&mut self, forcing: &Forcing<T, D>, by_sums: bool) {
+        let reach = match by_sums {
+            true => self.basis.degree(),
+            false => mapping::reach::<D>(),
+        };
+        let contact = &mut self.contact;
+        let basis = (&self.basis, &self.grid);
+        contact.dofs.lay(basis, &self.face_dofs, forcing, reach);
+        let seen = (self.basis.degree() + 1).pow(D as u32);
+        contact.delassus.lay(&contact.dofs, seen);
+        let (places, dofs) = (contact.dofs.dofs.len(), self.dofs.mass.len());
+        contact.inverse = vec![SVector::zeros(); places];
+        contact.velocity = vec![SVector::zeros(); places];
+        contact.impulse = vec![SVector::zeros(); places];
+        contact.gain = vec![SVector::zeros(); dofs];
+        contact.near = Vec::with_capacity(self.particles.len());
+        contact.closed = Vec::with_capacity(contact.dofs.contacts.len());
+        if !by_sums {
+            contact.reached = vec![SVector::zeros(); dofs];
+            contact.kicks = vec![SVector::zeros(); self.particles.len()];
+        }
+    }
+
+    /// Finds the particles at the walls, sums their masses in pairs of DOFs, and sees which contacts are closed.
+    fn find_contacts(&mut self, forcing: &Forcing<T, D>) {
+        let WallContact {
+            dofs,
+            delassus,
+            near,
+            closed,
+            ..
+        } = &mut self.contact;
+        let (basis, grid, particles) = (&self.basis, &self.grid, &self.particles);
+        delassus.clear();
+        near.clear();
+        for (p, (x, cell)) in particles.position.iter().zip(self.bins.cells()).enumerate() {
+            // Functions of further cells have no value at the wall.
+            if !Wall::all(forcing).any(|wall| wall.cells_to(grid, cell) <= basis.degree()) {
+                continue;
+            }
+            let half = half_size(grid, particles.volume[p]);
+            basis.for_each(grid, cell, x, |dof, phi, _| {
+                let Some(place) = dofs.place(dof).filter(|_| phi > T::zero()) else {
+                    return;
+                };
+                delassus.see(place, phi);
+                for contact in dofs.contacts_at(place) {
+                    let surface = contact.wall.distance(grid, x) - half[contact.wall.face.axis];
+                    contact.gap = contact.gap.min(surface);
+                }
+            });
+            if delassus.add_particle(dofs, particles.mass[p]) {
+                near.push(p as u32);
+            }
+        }
+        closed.clear();
+        for (k, contact) in dofs.contacts.iter().enumerate() {
+            if contact.gap <= grid.cell_size()[contact.wall.face.axis] * T::lit(CLOSED) {
+                closed.push(k as u32);
+            }
+        }
+        self.invert_masses(forcing);
+    }
+
+    /// One over the lumped mass of each DOF on a wall, nothing for components that another face holds.
+    fn invert_masses(&mut self, forcing: &Forcing<T, D>) {
+        let WallContact { dofs, inverse, .. } = &mut self.contact;
+        for (inverse, &dof) in inverse.iter_mut().zip(&dofs.dofs) {
+            let mass = self.dofs.mass[dof as usize];
+            let value = if mass > T::zero() {
+                T::one() / mass
+            } else {
+                T::zero()
+            };
+            *inverse = SVector::from_element(value);
+        }
+        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, _| {
+            if let Some(place) = dofs.place(dof) {
+                inverse[place][axis] = T::zero();
+            }
+        });
+    }
+}
+
+/// Half the size of a particle along each axis (m): its share of a cell, of the cell's shape.
+fn half_size<T: Scalar, const D: usize>(grid: &crate::grid::Grid<T, D>, volume: T) -> SVector<T, D> {
+    let cell = grid.cell_size();
+    let share = volume / cell.iter().fold(T::one(), |product, &h| product * h);
+    cell * (share.powf(T::one() / T::count(D)) / T::lit(2.0))
+}
