@@ -44,8 +44,8 @@ pub struct Diagnostics<T> {
     pub total_mass: T,
     /// Work of walls that rub on the particles (J), since the start.
     pub wall_work: T,
-    /// Most work (J) that they did in one step beside that of their own motion, zero if it never was positive: a wall
-    /// at rest only takes energy.
+    /// Most work (J) in one step of their impulses with velocities relative to them, zero if it never was positive: walls
+    /// at rest only take energy.
     pub wall_gain: T,
 }
 
@@ -108,7 +108,7 @@ impl<T: Scalar> Diagnostics<T> {
 
     pub(super) fn record_walls<const D: usize>(&mut self, action: &WallAction<T, D>) {
         self.wall_work += action.work;
-        self.wall_gain = self.wall_gain.max(action.work - action.drive);
+        self.wall_gain = self.wall_gain.max(action.rubbing);
     }
 
     /// Compares the mapped totals with those of the particles.

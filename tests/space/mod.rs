@@ -10,6 +10,7 @@ mod mandel;
 mod manufactured;
 mod patch;
 mod rotation;
+mod rubbing;
 mod saturated;
 mod slope;
 mod translation;

@@ -116,7 +116,7 @@ where
         }
         let particles = self.particles.velocity.iter_mut().zip(&self.particles.mass);
         for ((velocity, &mass), by) in particles.zip(kicks.iter()) {
-            action.add(mass, velocity, by);
+            action.impulse += by * mass;
             *velocity += by;
         }
     }

@@ -65,10 +65,10 @@ pub(super) struct WallContact<T, const D: usize> {
 pub(super) struct WallAction<T, const D: usize> {
     /// Change of their momentum (N s).
     pub(super) impulse: SVector<T, D>,
-    /// Change of their kinetic energy (J).
+    /// Work on them (J): of each impulse with the velocity of its DOF after it.
     pub(super) work: T,
-    /// Of that what the walls' own motion gave (J).
-    pub(super) drive: T,
+    /// The same with the velocity relative to the wall (J), what friction takes: never positive.
+    pub(super) rubbing: T,
 }
 
 impl<T: Scalar, const D: usize> WallAction<T, D> {
@@ -76,16 +76,8 @@ impl<T: Scalar, const D: usize> WallAction<T, D> {
         Self {
             impulse: SVector::zeros(),
             work: T::zero(),
-            drive: T::zero(),
+            rubbing: T::zero(),
         }
-    }
-
-    /// Adds the change `by` of the velocity of a particle.
-    #[inline(always)]
-    fn add(&mut self, mass: T, velocity: &SVector<T, D>, by: &SVector<T, D>) {
-        let half = T::one() / T::lit(2.0);
-        self.impulse += by * mass;
-        self.work += (velocity + by * half).dot(by) * mass;
     }
 }
 
@@ -148,12 +140,14 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
         }
     }
 
-    /// Work (J) of the impulses on walls that move.
-    fn drive(&self) -> T {
-        let contacts = self.dofs.contacts.iter();
-        contacts.fold(T::zero(), |sum, contact| {
-            sum + contact.impulse().dot(&contact.wall.velocity)
-        })
+    /// The work of the impulses at DOFs that have these velocities now.
+    fn measure_work(&self, velocities: &[SVector<T, D>], action: &mut WallAction<T, D>) {
+        for contact in &self.dofs.contacts {
+            let velocity = &velocities[self.dofs.dofs[contact.place] as usize];
+            let impulse = contact.impulse();
+            action.work += impulse.dot(velocity);
+            action.rubbing += impulse.dot(&(velocity - contact.wall.velocity));
+        }
     }
 }
 
@@ -189,7 +183,7 @@ where
         Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, velocity, _| {
             velocities[dof][axis] = velocity;
         });
-        action.drive = self.contact.drive();
+        self.contact.measure_work(&self.dofs.velocity, &mut action);
         if let Some(momentum) = &mut self.balance.momentum {
             *momentum += action.impulse;
         }

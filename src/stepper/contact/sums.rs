@@ -65,9 +65,9 @@ where
                 }
             });
             let mass = particles.mass[p];
-            action.add(mass, &particles.velocity[p], &by);
             particles.velocity[p] += by;
             let momentum = by * mass;
+            action.impulse += momentum;
             basis.for_each(grid, cell, x, |dof, phi, _| gain[dof] += momentum * phi);
         }
         let velocities = self.dofs.velocity.iter_mut().zip(&self.dofs.mass);
