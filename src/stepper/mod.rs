@@ -491,7 +491,7 @@ fn refuse_unknown_stress<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>, P>
             particle,
             name: "stress",
             value: particles.stress[particle][(0, 0)].primal(),
-            allowed: L::LIMITS,
+            allowed: law.limits(),
         }),
     }
 }
