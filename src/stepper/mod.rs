@@ -149,6 +149,11 @@ where
     /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside the grid, a constant of the phase makes no
     /// sense, or the reconstruction is of one phase only beyond one axis ([`Reconstruction::PARTICLE_MATRIX`]).
     pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
+        const {
+            crate::basis::constants_agree::<T, D, B>();
+            crate::reconstruction::constants_agree::<T, D, R>();
+            crate::phase::constants_agree::<T, D, P>();
+        };
         let Setup {
             grid,
             basis,
