@@ -4,6 +4,8 @@ use std::io;
 
 use thiserror::Error;
 
+use crate::grid::Face;
+
 /// A grid that cannot be built.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum GridError {
@@ -123,6 +125,22 @@ pub enum StepError {
         value: f64,
         /// What is allowed.
         allowed: &'static str,
+    },
+    /// Friction at a face, with a liquid that flows through the pores.
+    #[error(
+        "the face {face} is to rub, but friction is for the solid of one phase; where a liquid flows let the face be held or free"
+    )]
+    FrictionWithFlow {
+        /// The face.
+        face: Face,
+    },
+    /// A pressure outside the pores, where no liquid flows through them.
+    #[error(
+        "the face {face} has a pore pressure, but no liquid flows through the pores of this phase; leave it out"
+    )]
+    PressureWithoutFlow {
+        /// The face.
+        face: Face,
     },
     /// The step size is not a positive number.
     #[error("the time step is {value} s; it must be positive and finite")]

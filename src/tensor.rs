@@ -3,6 +3,7 @@
 mod spectral;
 
 pub use spectral::Spectral;
+pub(crate) use spectral::is_plain;
 
 use nalgebra::SMatrix;
 

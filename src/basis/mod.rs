@@ -49,7 +49,9 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     const TAKES_IN_CELLS: bool = false;
 
     /// Takes in which cells hold particles, before a step; for families whose functions depend on where the material ends.
-    fn take_in(&mut self, _grid: &Grid<T, D>, _bins: &Bins<D>) {}
+    fn take_in(&mut self, _grid: &Grid<T, D>, _bins: &Bins<D>) {
+        const { assert!(!Self::TAKES_IN_CELLS, "TAKES_IN_CELLS wants an own `take_in`") };
+    }
 
     /// Bytes allocated, for the user's information.
     fn bytes(&self) -> usize {
@@ -77,6 +79,7 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
     /// [`BasisFamily::WIDTH`] is not zero.
     #[inline(always)]
     fn factors<V: SideBySide<T>>(&self, _grid: &Grid<T, D>, _cell: &Cell<D>, unit: &[V; D]) -> Factors<V, D> {
+        const { assert!(Self::WIDTH == 0, "WIDTH wants an own `factors`") };
         let nothing = unit.map(|_| [V::splat(T::zero()); tensor::MOST_WIDTH]);
         Factors {
             value: nothing,
@@ -84,9 +87,14 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
         }
     }
 
-    /// Polynomial degree of the values: what they can reproduce, and how far apart along an axis two DOFs
-    /// can be whose values overlap.
+    /// Polynomial degree that the values reproduce.
     fn degree(&self) -> usize;
+
+    /// How far apart along an axis two DOFs can be whose values overlap; no less than [`BasisFamily::WIDTH`] less one. Unless told
+    /// otherwise the least that the degree and the width allow.
+    fn reach(&self) -> usize {
+        self.degree().max(Self::WIDTH.saturating_sub(1))
+    }
 
     /// Number of DOFs along each axis.
     fn dofs(&self, grid: &Grid<T, D>) -> [usize; D];
@@ -114,6 +122,12 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
         x: &SVector<T, D>,
         f: impl FnMut(usize, T, SVector<T, D>),
     ) {
+        const {
+            assert!(
+                matches!(Self::AT_FIXED_POINTS, FixedPoints::Alike),
+                "AT_FIXED_POINTS wants an own `for_each_at_fixed_point`"
+            )
+        };
         self.for_each(grid, cell, x, f);
     }
 
@@ -148,7 +162,7 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
         let mut stride = 1;
         let mut reach = 0;
         for count in dofs {
-            reach += self.degree().min(count - 1) * stride;
+            reach += self.reach().min(count - 1) * stride;
             stride *= count;
         }
         reach
@@ -176,4 +190,12 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
             }
         }
     }
+}
+
+/// What constants of a family ask of each other; evaluated where a stepper is made.
+pub(crate) const fn constants_agree<T: Scalar, const D: usize, B: BasisFamily<T, D>>() {
+    assert!(
+        B::WIDTH <= MOST_WIDTH,
+        "WIDTH is at most `basis::tensor::MOST_WIDTH`"
+    );
 }

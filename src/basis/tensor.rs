@@ -239,7 +239,7 @@ pub(crate) fn advance<const D: usize>(k: &mut [usize; D], width: usize) -> bool 
 
 /// Makes a one-axis family a [`BasisFamily`](crate::basis::BasisFamily) in every dimension, by its tensor product.
 ///
-/// `width` is the `W` of its [`AxisFamily`], `degree` that of its values; `at_fixed_points` names the family whose
+/// `width` is the `W` of its [`AxisFamily`], `degree` that of the polynomials which its values reproduce; `at_fixed_points` names the family whose
 /// functions points that stand still see, if it is another one.
 #[macro_export]
 macro_rules! tensor_product_family {
@@ -265,6 +265,10 @@ macro_rules! tensor_product_family {
 
             fn degree(&self) -> usize {
                 $degree
+            }
+
+            fn reach(&self) -> usize {
+                $width - 1
             }
 
             fn dofs(&self, grid: &$crate::grid::Grid<T, D>) -> [usize; D] {

@@ -7,7 +7,7 @@ pub use cone::{ConeMatch, Strength};
 use nalgebra::SMatrix;
 
 use self::cone::Cone;
-use super::elastic_stretch::{ElasticStretch, Principal, stored_energy, wave_modulus};
+use super::elastic_stretch::{ElasticStretch, Principal, length, stored_energy, wave_modulus};
 use super::linear_elastic::hooke_strain_at;
 use super::von_mises::deviator;
 use super::{ConstitutiveLaw, Moduli};
@@ -103,6 +103,7 @@ fn close<T: Scalar, const D: usize>(trial: &mut Principal<T, D>, gap: T) {
     let contact = if rest < T::zero() { rest / change } else { T::one() };
     let mean = rest / T::lit(3.0);
     trial.strain = deviator(&trial.strain).map(|e| e * contact + mean);
+    trial.scale_shear(contact);
 }
 
 impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for DruckerPrager<T> {
@@ -123,14 +124,15 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for DruckerPrager<T> {
             close(&mut principal, state.gap);
         }
         let trial = principal.strain;
-        let yields = self.cone.return_to(&self.moduli, &mut principal.strain);
+        let (yields, scale) = self.cone.return_to(&self.moduli, &mut principal.strain);
+        principal.scale_shear(scale);
         state.gap = T::zero();
         if yields.is_at_apex() && self.cone.separates() {
             state.gap = trial.sum();
         }
         if yields.is_plastic() {
             let flow = deviator(&(trial - principal.strain));
-            state.plastic_strain += (T::lit(2.0) / T::lit(3.0)).sqrt() * flow.norm();
+            state.plastic_strain += (T::lit(2.0) / T::lit(3.0)).sqrt() * length(&flow);
         }
         if separated || yields.is_plastic() {
             state.stretch = principal.stretch();

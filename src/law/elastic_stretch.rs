@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector, Vector3};
 
 use super::Moduli;
 use crate::scalar::Scalar;
-use crate::tensor::{Spectral, symmetric};
+use crate::tensor::{Spectral, is_plain, symmetric};
 
 /// Newton steps for the volume that belongs to a stress; it takes about one per factor of e in the volume.
 const NEWTON_STEPS: usize = 100;
@@ -45,6 +45,8 @@ impl<T: Scalar, const D: usize> ElasticStretch<T, D> {
         let squared = in_space(&spectral.values, self.off_plane);
         Principal {
             strain: squared.map(|b| b.ln() / T::lit(2.0)),
+            // The divided difference of ln(b)/2, whose values are next to equal where anything is left.
+            shear: between(|p, q| spectral.rest()[(p, q)] / (squared[p] + squared[q])),
             spectral,
         }
     }
@@ -69,7 +71,13 @@ impl<T: Scalar, const D: usize> ElasticStretch<T, D> {
         let log_volume = log_volume(stress.sum() / (three * moduli.bulk()))?;
         let (volume, mean) = (log_volume.exp(), moduli.bulk() * log_volume);
         let strain = stress.map(|s| (volume * s - mean) / (two * moduli.mu) + log_volume / three);
-        let found = Principal { spectral, strain }.stretch();
+        let shear = between(|p, q| spectral.rest()[(p, q)] * volume / (two * moduli.mu));
+        let found = Principal {
+            spectral,
+            strain,
+            shear,
+        }
+        .stretch();
         let finite = found.b.iter().all(|b| b.is_finite()) && found.off_plane.is_finite();
         finite.then_some(found)
     }
@@ -100,12 +108,32 @@ fn in_space<T: Scalar, const D: usize>(values: &SVector<T, D>, off_plane: T) -> 
     Vector3::from_fn(|i, _| if i < D { values[i] } else { off_plane })
 }
 
+/// Entries off the diagonal for each pair of axes; plain numbers have none.
+#[inline(always)]
+fn between<T: Scalar, const D: usize>(entry: impl Fn(usize, usize) -> T) -> SMatrix<T, D, D> {
+    if is_plain::<T>() {
+        return SMatrix::zeros();
+    }
+    SMatrix::from_fn(|p, q| if p == q { T::zero() } else { entry(p, q) })
+}
+
+/// Length of a vector; that of zero has no derivative, not one that is no number.
+#[inline(always)]
+pub(super) fn length<T: Scalar>(vector: &Vector3<T>) -> T {
+    if !is_plain::<T>() && vector.norm_squared() == T::zero() {
+        return T::zero();
+    }
+    vector.norm()
+}
+
 /// An elastic stretch in its principal axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Principal<T, const D: usize> {
     spectral: Spectral<T, D>,
     /// Elastic logarithmic strains, those in the grid's axes first.
     pub(super) strain: Vector3<T>,
+    /// Their shear in the principal axes, see [`Spectral::rest`].
+    shear: SMatrix<T, D, D>,
 }
 
 impl<T: Scalar, const D: usize> Principal<T, D> {
@@ -113,8 +141,13 @@ impl<T: Scalar, const D: usize> Principal<T, D> {
     #[inline(always)]
     pub(super) fn stretch(&self) -> ElasticStretch<T, D> {
         let squared = self.strain.map(|e| (e + e).exp());
+        // The divided difference of exp(2 e) at values next to equal.
+        let shear = |p: usize, q: usize| {
+            let mean = (self.strain[p] + self.strain[q]).exp();
+            (mean + mean) * self.shear[(p, q)]
+        };
         ElasticStretch {
-            b: self.in_plane(&squared),
+            b: self.in_plane(&squared, shear),
             off_plane: if D < 3 { squared[2] } else { T::one() },
         }
     }
@@ -128,7 +161,8 @@ impl<T: Scalar, const D: usize> Principal<T, D> {
     /// Cauchy stress (Pa) of material with the volume ratio `j`.
     #[inline(always)]
     pub(super) fn stress(&self, moduli: &Moduli<T>, j: T) -> SMatrix<T, D, D> {
-        self.in_plane(&(kirchhoff(moduli, &self.strain) / j))
+        let shear = |p: usize, q: usize| (moduli.mu + moduli.mu) * self.shear[(p, q)] / j;
+        self.in_plane(&(kirchhoff(moduli, &self.strain) / j), shear)
     }
 
     /// Cauchy stress (Pa) along the axes that the grid does not have.
@@ -137,8 +171,17 @@ impl<T: Scalar, const D: usize> Principal<T, D> {
     }
 
     #[inline(always)]
-    fn in_plane(&self, values: &Vector3<T>) -> SMatrix<T, D, D> {
-        self.spectral.with_values(&SVector::from_fn(|i, _| values[i]))
+    fn in_plane(&self, values: &Vector3<T>, shear: impl FnMut(usize, usize) -> T) -> SMatrix<T, D, D> {
+        let values = SVector::from_fn(|i, _| values[i]);
+        self.spectral.with_values_and_rest(&values, shear)
+    }
+
+    /// The deviator of the strain was scaled; so is its part off the diagonal.
+    #[inline(always)]
+    pub(super) fn scale_shear(&mut self, factor: T) {
+        if !is_plain::<T>() {
+            self.shear *= factor;
+        }
     }
 }
 

@@ -24,7 +24,9 @@ pub struct Hill<T> {
 impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hill<T> {
     type State = ();
 
-    const LIMITS: &'static str = "in one dimension Hill's law has a meaning below its modulus only, so take smaller steps or another law";
+    fn limits(&self) -> &'static str {
+        "in one dimension Hill's law has a meaning below its modulus only, so take smaller steps or another law"
+    }
 
     /// Also refuses a stress that is not a number.
     #[inline(always)]

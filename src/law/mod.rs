@@ -10,6 +10,8 @@ mod logarithmic;
 mod moduli;
 mod neo_hookean;
 mod newtonian_fluid;
+#[cfg(feature = "scene")]
+pub(crate) mod one_of;
 mod record;
 mod st_venant_kirchhoff;
 mod von_mises;
@@ -43,7 +45,9 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Sync {
     type State: Copy + Default + Send + Sync;
 
     /// What [`ConstitutiveLaw::knows`] asks for, for messages.
-    const LIMITS: &'static str = "its law knows no such stress";
+    fn limits(&self) -> &'static str {
+        "its law knows no such stress"
+    }
 
     /// Whether the law has a meaning at this stress. A step that leads beyond ends in an error.
     #[inline(always)]

@@ -107,8 +107,14 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NeoHookean<T> {
         }
         let spectral = Spectral::of(&symmetric(stress));
         let squared = self.stretches_under(&spectral.values)?;
-        let stretch = spectral.with_values(&squared.map(|b| b.sqrt()));
-        Some(DeformationGradient(stretch))
+        let stretches = squared.map(|b| b.sqrt());
+        // That of the squared stretch, over the divided difference of the root.
+        let volume_over_mu = stretches.product() / self.moduli.mu;
+        let rest =
+            |p: usize, q: usize| spectral.rest()[(p, q)] * volume_over_mu / (stretches[p] + stretches[q]);
+        Some(DeformationGradient(
+            spectral.with_values_and_rest(&stretches, rest),
+        ))
     }
 
     #[inline]

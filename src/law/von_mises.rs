@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, Vector3};
 
 use super::constant::{not_negative, positive};
-use super::elastic_stretch::{ElasticStretch, stored_energy, wave_modulus};
+use super::elastic_stretch::{ElasticStretch, length, stored_energy, wave_modulus};
 use super::{ConstitutiveLaw, Moduli};
 use crate::error::SetupError;
 use crate::scalar::Scalar;
@@ -76,7 +76,7 @@ impl<T: Scalar> VonMises<T> {
     /// Mises' stress `sqrt(3/2 s : s)` of a deviatoric strain, `s = 2 mu e`.
     #[inline(always)]
     fn mises(&self, deviator: &Vector3<T>) -> T {
-        T::lit(6.0).sqrt() * self.moduli.mu * deviator.norm()
+        T::lit(6.0).sqrt() * self.moduli.mu * length(deviator)
     }
 
     #[inline(always)]
@@ -110,7 +110,9 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for VonMises<T> {
         if excess > T::zero() {
             let three_mu = T::lit(3.0) * self.moduli.mu;
             let plastic = excess / (three_mu + self.hardening);
-            principal.strain -= deviator * (three_mu * plastic / trial);
+            let share = three_mu * plastic / trial;
+            principal.strain -= deviator * share;
+            principal.scale_shear(T::one() - share);
             state.plastic_strain += plastic;
             state.stretch = principal.stretch();
         }

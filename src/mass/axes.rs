@@ -78,7 +78,7 @@ fn axis_mass<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     let shape = basis.dofs(grid);
     let stride: usize = shape[..axis].iter().product();
     let degree = basis.degree();
-    let mut matrix = Banded::zeros(shape[axis], degree.min(shape[axis].saturating_sub(1)));
+    let mut matrix = Banded::zeros(shape[axis], basis.reach().min(shape[axis].saturating_sub(1)));
     let half_band = matrix.half_band();
     let rule = gauss_legendre::<T>(degree + 1);
     let half = T::one() / T::lit(2.0);

@@ -18,7 +18,8 @@ use crate::scalar::Scalar;
 /// with a velocity of its own. Everything a phase adds to the step stands under `if P::COUPLED` or `if P::FLOWS`, since
 /// zero-sized data alone leave empty loops behind.
 ///
-/// The hooks below [`Phase::update`] are asked only of a phase that [`Phase::FLOWS`]; masses and forces of the liquid are
+/// The hooks below [`Phase::validate`] are asked only of a phase that [`Phase::FLOWS`], which must write each of them: one that
+/// it forgets is an error at compile time, as soon as a stepper is made of it. Masses and forces of the liquid are
 /// those of [`mod@crate::stepper`]'s second balance of momentum.
 pub trait Phase<T: Scalar, const D: usize>: Sync {
     /// Whether there is anything but the solid.
@@ -51,46 +52,73 @@ pub trait Phase<T: Scalar, const D: usize>: Sync {
         _liquid: &SMatrix<T, D, D>,
         _particle: &mut Self::Particle,
     ) {
+        const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `update_with_flow`") };
     }
 
     /// Velocity (m/s) and pressure (Pa, tension positive) of a particle's liquid.
     fn liquid(&self, _particle: &Self::Particle) -> PoreLiquid<T, D> {
+        const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `liquid`") };
         PoreLiquid::default()
     }
 
     /// Adds to the velocity (m/s) of a particle's liquid.
-    fn accelerate_liquid(&self, _change: SVector<T, D>, _particle: &mut Self::Particle) {}
+    fn accelerate_liquid(&self, _change: SVector<T, D>, _particle: &mut Self::Particle) {
+        const {
+            assert!(
+                !Self::FLOWS,
+                "a phase that FLOWS wants an own `accelerate_liquid`"
+            )
+        };
+    }
 
     /// Gives a particle's liquid another velocity and pressure.
-    fn set_liquid(&self, _liquid: PoreLiquid<T, D>, _particle: &mut Self::Particle) {}
+    fn set_liquid(&self, _liquid: PoreLiquid<T, D>, _particle: &mut Self::Particle) {
+        const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `set_liquid`") };
+    }
 
     /// Share of the volume that the liquid fills.
     fn porosity(&self) -> T {
+        const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `porosity`") };
         T::one()
     }
 
     /// Mass of the liquid in a particle of the given `volume`.
     fn liquid_mass(&self, _volume: T) -> T {
+        const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `liquid_mass`") };
         T::zero()
     }
 
     /// Drag of a particle (kg/s in 3-D): the force on its liquid, per porosity, for each m/s by which the solid is faster.
     fn drag(&self, _solid_mass: T, _volume: T) -> T {
+        const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `drag`") };
         T::zero()
     }
 
     /// Whether the drag of a step is felt by the velocity at the step's start or at its end.
     fn drag_treatment(&self) -> Drag {
+        const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `drag_treatment`") };
         Drag::Implicit
     }
 
     /// Stiffness (Pa) of the liquid in its pores: pressure rate per volume rate of the liquid's flow, `K / n`.
     fn liquid_stiffness(&self) -> T {
+        const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `liquid_stiffness`") };
         T::zero()
     }
 
     /// Energy that the compressed liquid stores, per volume (J/m3).
     fn liquid_energy_density(&self, _particle: &Self::Particle) -> T {
+        const {
+            assert!(
+                !Self::FLOWS,
+                "a phase that FLOWS wants an own `liquid_energy_density`"
+            )
+        };
         T::zero()
     }
+}
+
+/// What constants of a phase ask of each other; evaluated where a stepper is made.
+pub(crate) const fn constants_agree<T: Scalar, const D: usize, P: Phase<T, D>>() {
+    assert!(!P::FLOWS || P::COUPLED, "FLOWS wants COUPLED");
 }

@@ -174,6 +174,10 @@ pub struct Crossed<T> {
 }
 
 /// Turns particle data into quadrature points with weighted values.
+///
+/// Five items must be written. Each constant that says more goes with the methods that its words name: a constant without
+/// its method, or constants that contradict each other, are errors at compile time, as soon as a stepper is made of the type.
+/// [`crate::testing::check_reconstruction`] checks that all methods stream what `integrate` and `integrate_conserved` do.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not reconstruct scalar `{T}` in `{D}` dimensions",
     note = "CubicSpline is global and exists in 1-D only; Taylor<T, D, NB> takes NB = 3, 6, 10 for D = 1, 2, 3"
@@ -232,7 +236,9 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
 
     /// Takes in the field that [`Reconstruction::integrate_cells`] or [`Reconstruction::integrate_four`] will stream next, where a
     /// cell's fit wants the values of its neighbours.
-    fn take_in_field<Q: Field<T>>(&mut self, _cloud: &Cloud<'_, T, D>, _value: &(impl Values<T, Q> + Sync)) {}
+    fn take_in_field<Q: Field<T>>(&mut self, _cloud: &Cloud<'_, T, D>, _value: &(impl Values<T, Q> + Sync)) {
+        const { assert!(!Self::KEEPS_FITS, "KEEPS_FITS wants an own `take_in_field`") };
+    }
 
     /// What [`Reconstruction::integrate`] streams in the given `cells`, places in the list of occupied ones. Only asked where
     /// [`Reconstruction::BY_CELLS`].
@@ -243,9 +249,10 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         _value: impl Fn(usize) -> Q,
         _sink: impl FnMut(&Point<T, D>, Q),
     ) {
+        const { assert!(!Self::BY_CELLS, "BY_CELLS wants an own `integrate_cells`") };
     }
 
-    /// What [`Reconstruction::integrate_conserved`] streams in the given `cells`, likewise.
+    /// What [`Reconstruction::integrate_conserved`] streams in the given `cells`, likewise, where not the particles are streamed.
     fn integrate_conserved_cells<Q: Field<T>>(
         &self,
         _cloud: &Cloud<'_, T, D>,
@@ -253,11 +260,18 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         _amount: impl Fn(usize) -> Q,
         _sink: impl FnMut(&Point<T, D>, Q),
     ) {
+        const {
+            assert!(
+                !Self::BY_CELLS || Self::AMOUNTS_AT_PARTICLES,
+                "BY_CELLS wants an own `integrate_conserved_cells`"
+            )
+        };
     }
 
     /// Coordinates in a cell, each in `[-1, 1]`, of the points along an axis whose products [`Reconstruction::integrate_four`]
     /// streams, axis 0 fastest; none if it cannot as it is set up.
     fn line(&self) -> impl Iterator<Item = T> {
+        const { assert!(!Self::BY_FOUR, "BY_FOUR wants an own `line`") };
         std::iter::empty()
     }
 
@@ -273,6 +287,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         _value: &impl Values<T, Q>,
         _sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
     ) -> Four {
+        const { assert!(!Self::BY_FOUR, "BY_FOUR wants an own `integrate_four`") };
         Four::default()
     }
 
@@ -286,6 +301,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         _value: &impl Fn(usize) -> Q,
         _sink: impl FnMut(&Point<T, D>, Q),
     ) -> bool {
+        const { assert!(!Self::BY_FOUR, "BY_FOUR wants an own `integrate_hard`") };
         true
     }
 
@@ -300,12 +316,19 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         _crossed: &[Crossed<T>],
         _values: &mut [Q],
     ) {
+        const { assert!(!Self::RELAXES, "RELAXES wants an own `relax`") };
     }
 
     /// How far the material fills the occupied cell at `place` in the list of those. Beyond one dimension the stepper ties the
     /// functions of cells that are not full to those of the next ones ([`crate::mass::Penalty`]). Only asked where
     /// [`Reconstruction::PARTICLE_MATRIX`].
     fn filling(&self, _place: usize) -> Filling {
+        const {
+            assert!(
+                D == 1 || !Self::PARTICLE_MATRIX,
+                "PARTICLE_MATRIX wants an own `filling`"
+            )
+        };
         Filling::Full
     }
 
@@ -334,4 +357,19 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
     fn bytes(&self) -> usize {
         0
     }
+}
+
+/// What constants of a reconstruction ask of each other; evaluated where a stepper is made.
+pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction<T, D>>() {
+    assert!(
+        !R::PLAIN || R::FIELDS_AT_PARTICLES && R::AMOUNTS_AT_PARTICLES,
+        "PLAIN wants FIELDS_AT_PARTICLES and AMOUNTS_AT_PARTICLES"
+    );
+    assert!(
+        !R::PARTICLE_MATRIX || R::AMOUNTS_AT_PARTICLES,
+        "PARTICLE_MATRIX wants AMOUNTS_AT_PARTICLES"
+    );
+    // Four at once are prepared by nobody, and are asked for only where cells are streamed alone.
+    assert!(!R::BY_FOUR || R::BY_CELLS, "BY_FOUR wants BY_CELLS");
+    assert!(!R::KEEPS_FITS || R::BY_CELLS, "KEEPS_FITS wants BY_CELLS");
 }

@@ -1,26 +1,27 @@
 //! The laws of two and three dimensions whose stress follows from what a particle remembers, chosen at run time.
 
-use nalgebra::SMatrix;
-
+use crate::law::one_of::{Holds, one_of_laws};
 use crate::law::{
-    ConstitutiveLaw, DeformationGradient, DruckerPrager, DruckerPragerState, ElasticStretch, Hencky,
-    NeoHookean, NewtonianFluid, StVenantKirchhoff, VolumeRatio, VonMises, VonMisesState,
+    DeformationGradient, DruckerPrager, DruckerPragerState, ElasticStretch, Hencky, NeoHookean,
+    NewtonianFluid, StVenantKirchhoff, VolumeRatio, VonMises, VonMisesState,
 };
 use crate::record::Record;
 use crate::scalar::Scalar;
 
-/// One of those laws. One type for all: another for each would multiply the steppers to compile, and they take seconds each.
-/// The price is memory: a particle has room for the longest history, Drucker-Prager's eight numbers in two dimensions, and a
-/// word that says whose it is.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum HistoryLaw<T> {
-    NeoHookean(NeoHookean<T>),
-    StVenantKirchhoff(StVenantKirchhoff<T>),
-    Hencky(Hencky<T>),
-    VonMises(VonMises<T>),
-    DruckerPrager(DruckerPrager<T>),
-    NewtonianFluid(NewtonianFluid<T>),
-}
+one_of_laws!(
+    /// One of those laws. One type for all: another for each would multiply the steppers to compile, and they take seconds
+    /// each. The price is memory: a particle has room for the longest history, Drucker-Prager's eight numbers in two
+    /// dimensions, and a word that says whose it is.
+    pub(super) enum HistoryLaw {
+        NeoHookean,
+        StVenantKirchhoff,
+        Hencky,
+        VonMises,
+        DruckerPrager,
+        NewtonianFluid,
+    }
+    impl [const D: usize] in D with History<T, D>
+);
 
 /// What a particle remembers: of its own law, or nothing yet.
 #[derive(Clone, Copy, Debug, Default)]
@@ -76,108 +77,30 @@ impl<T: Scalar, const D: usize> Record<T> for History<T, D> {
     }
 }
 
-/// Of each law of the enum its history. That of another law, which no particle has, counts as none.
-macro_rules! each_law {
-    ($($law:ident: $history:ident),+) => {
-        impl<T: Scalar> HistoryLaw<T> {
-            /// Carries stress and state by the law that it is, over a time if it is told.
+/// Each law's own history. That of another law, which no particle has, counts as none.
+macro_rules! holds {
+    ($($variant:ident: $own:ty),+ $(,)?) => {
+        $(impl<T: Scalar, const D: usize> Holds<$own> for History<T, D> {
             #[inline(always)]
-            fn carry<const D: usize>(
-                &self,
-                dt: Option<T>,
-                increment: &SMatrix<T, D, D>,
-                stress: &mut SMatrix<T, D, D>,
-                state: &mut History<T, D>,
-            ) {
+            fn own(&self) -> Option<&$own> {
                 match self {
-                    $(Self::$law(law) => {
-                        let mut own = match state {
-                            History::$history(own) => *own,
-                            _ => Default::default(),
-                        };
-                        match dt {
-                            Some(dt) => law.update_over(dt, increment, stress, &mut own),
-                            None => law.update(increment, stress, &mut own),
-                        }
-                        *state = History::$history(own);
-                    })+
-                }
-            }
-        }
-
-        impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for HistoryLaw<T> {
-            type State = History<T, D>;
-
-            #[inline(always)]
-            fn large_strain(&self) -> bool {
-                true
-            }
-
-            #[inline(always)]
-            fn update(
-                &self,
-                increment: &SMatrix<T, D, D>,
-                stress: &mut SMatrix<T, D, D>,
-                state: &mut Self::State,
-            ) {
-                self.carry(None, increment, stress, state);
-            }
-
-            #[inline(always)]
-            fn update_over(
-                &self,
-                dt: T,
-                increment: &SMatrix<T, D, D>,
-                stress: &mut SMatrix<T, D, D>,
-                state: &mut Self::State,
-            ) {
-                self.carry(Some(dt), increment, stress, state);
-            }
-
-            fn start(&self, stress: &SMatrix<T, D, D>, off_plane: Option<T>) -> Option<Self::State> {
-                match self {
-                    $(Self::$law(law) => law.start(stress, off_plane).map(History::$history),)+
-                }
-            }
-
-            fn strain_for(
-                &self,
-                change: &SMatrix<T, D, D>,
-                density: T,
-                stress: &SMatrix<T, D, D>,
-                state: &Self::State,
-            ) -> Option<SMatrix<T, D, D>> {
-                match (self, state) {
-                    $((Self::$law(law), History::$history(own)) => {
-                        law.strain_for(change, density, stress, own)
-                    })+
-                    // Nothing has happened to it yet.
+                    Self::$variant(own) => Some(own),
                     _ => None,
                 }
             }
 
-            fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
-                match (self, state) {
-                    $((Self::$law(law), History::$history(own)) => law.wave_speed(density, stress, own),)+
-                    $((Self::$law(law), _) => law.wave_speed(density, stress, &Default::default()),)+
-                }
+            #[inline(always)]
+            fn of(own: $own) -> Self {
+                Self::$variant(own)
             }
-
-            fn energy_density(&self, stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
-                match (self, state) {
-                    $((Self::$law(law), History::$history(own)) => law.energy_density(stress, own),)+
-                    $((Self::$law(law), _) => law.energy_density(stress, &Default::default()),)+
-                }
-            }
-        }
+        })+
     };
 }
 
-each_law!(
-    NeoHookean: Gradient,
-    StVenantKirchhoff: Gradient,
-    Hencky: Stretch,
-    VonMises: VonMises,
-    DruckerPrager: DruckerPrager,
-    NewtonianFluid: Volume
+holds!(
+    Gradient: DeformationGradient<T, D>,
+    Stretch: ElasticStretch<T, D>,
+    VonMises: VonMisesState<T, D>,
+    DruckerPrager: DruckerPragerState<T, D>,
+    Volume: VolumeRatio<T>,
 );

@@ -72,7 +72,9 @@ where
         self.spans.stale |= crossings > 0;
         match fault {
             None => Ok(()),
-            Some(Fault::Material(p, flaw)) => Err(flaw.error(self.steps, self.order.number(p), L::LIMITS)),
+            Some(Fault::Material(p, flaw)) => {
+                Err(flaw.error(self.steps, self.order.number(p), self.law.limits()))
+            }
             Some(Fault::Left(p)) => Err(self.left(p)),
         }
     }

@@ -18,7 +18,8 @@ where
     P: Phase<T, D>,
 {
     /// Sets the force per mass (N/kg) of every particle, a function of where it was at the start, beside the uniform one of
-    /// [`super::Forcing`]. It acts in every step until it is set again; the first call allocates. Steps of one phase only.
+    /// [`super::Forcing`]. It acts in every step until it is set again; the first call allocates. Where a liquid flows through the pores it is
+    /// the force per mass of both, the solid and the liquid that the particle holds.
     pub fn set_body_forces(&mut self, mut force: impl FnMut(&SVector<T, D>) -> SVector<T, D>) {
         // By the particles' numbers: their order in memory may change before a step uses them.
         self.body_forces.resize(self.particles.len(), SVector::zeros());
@@ -27,7 +28,7 @@ where
         }
     }
 
-    /// `f_i += sum_p m_p b_p phi_i(x_p)`.
+    /// `f_i += sum_p m_p b_p phi_i(x_p)`, of one phase.
     pub(super) fn add_body_forces(&mut self) {
         let (basis, grid, force) = (&self.basis, &self.grid, &mut self.dofs.force);
         let load = &mut self.balance.load;
@@ -36,6 +37,27 @@ where
             let weight = self.body_forces[self.order.number(place)] * mass;
             *load += weight;
             basis.for_each(grid, cell, x, |i, phi, _| force[i] += weight * phi);
+        }
+    }
+
+    /// The same of two: the mixture feels `(m_s + n m_w) b`, the liquid, whose balance is per porosity `n`, feels `m_w b`.
+    pub(super) fn add_body_forces_to_both(&mut self) {
+        let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
+        let (whole, liquid) = (&mut self.dofs.force, &mut self.liquid.force);
+        let inverse = T::one() / phase.porosity();
+        let bodies = self.particles.mass.iter().zip(&self.particles.volume);
+        let places = self.particles.position.iter().zip(self.bins.cells());
+        for (place, ((&solid_mass, &volume), (x, cell))) in bodies.zip(places).enumerate() {
+            let force = self.body_forces[self.order.number(place)];
+            let liquid_mass = phase.liquid_mass(volume);
+            let (on_whole, on_liquid) = (
+                force * (solid_mass + liquid_mass),
+                force * (liquid_mass * inverse),
+            );
+            basis.for_each(grid, cell, x, |i, phi, _| {
+                whole[i] += on_whole * phi;
+                liquid[i] += on_liquid * phi;
+            });
         }
     }
 }

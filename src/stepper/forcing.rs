@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::error::SetupError;
+use crate::error::{SetupError, StepError};
 use crate::grid::{Cell, Face, Grid, Side};
 use crate::scalar::Scalar;
 
@@ -21,7 +21,7 @@ pub enum FaceCondition<T, const D: usize> {
         acceleration: SVector<T, D>,
     },
     /// A wall at the grid's face that nothing passes, that does not hold what moves away from it, and along which material slides
-    /// with Coulomb's friction. For the solid of one phase.
+    /// with Coulomb's friction. For the solid of one phase; a step of a phase whose liquid flows refuses it.
     Frictional {
         /// Coefficient of friction, not negative; 0 is a smooth wall.
         coefficient: T,
@@ -66,7 +66,7 @@ impl<T: Scalar, const D: usize> FaceCondition<T, D> {
     }
 }
 
-/// What the liquid in the pores meets at a face, for phases with a liquid that flows.
+/// What the liquid in the pores meets at a face, for phases with a liquid that flows; a step of another phase refuses a pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PoreCondition<T> {
     /// It does not pass: at a held face it moves as the face does, at a body's surface as the solid there.
@@ -128,6 +128,20 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
         self.pores
             .get(face.axis)
             .map_or(PoreCondition::Sealed, |sides| sides[face.side as usize])
+    }
+
+    /// Refuses what a phase whose liquid flows, or one without such a liquid, does not look at.
+    pub(super) fn suits_phase(&self, flows: bool) -> Result<(), StepError> {
+        for face in Face::all::<D>() {
+            let rubs = matches!(self.face(face), FaceCondition::Frictional { .. });
+            if flows && rubs {
+                return Err(StepError::FrictionWithFlow { face });
+            }
+            if !flows && matches!(self.pores(face), PoreCondition::Pressure(_)) {
+                return Err(StepError::PressureWithoutFlow { face });
+            }
+        }
+        Ok(())
     }
 
     /// Sets the condition at a face. A face of an axis that does not exist is left out.

@@ -51,7 +51,7 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
             }
         } else {
             Self {
-                lattice: Lattice::zeros(basis.dofs(grid), basis.degree()),
+                lattice: Lattice::zeros(basis.dofs(grid), basis.reach()),
                 penalty: if ties {
                     Penalty::new(basis, grid)
                 } else {

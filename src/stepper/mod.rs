@@ -155,6 +155,11 @@ where
     /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside the grid, a constant of the phase makes no
     /// sense, or the reconstruction is of one phase only beyond one axis ([`Reconstruction::PARTICLE_MATRIX`]).
     pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
+        const {
+            crate::basis::constants_agree::<T, D, B>();
+            crate::reconstruction::constants_agree::<T, D, R>();
+            crate::phase::constants_agree::<T, D, P>();
+        };
         let Setup {
             grid,
             basis,
@@ -294,10 +299,12 @@ where
     /// One step of size `dt` (s) under `forcing`, the loads and boundary values of this step.
     ///
     /// # Errors
-    /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the law. The particles then hold the
-    /// state in which that was noticed.
+    /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the law: the particles then
+    /// hold the state in which that was noticed. If the step's size makes no sense, or `forcing` has a condition that the phase does
+    /// not know (friction where a liquid flows, a pore pressure where none does): nothing has moved then.
     pub fn step(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
         check_size(dt)?;
+        forcing.suits_phase(P::FLOWS)?;
         self.prepare();
         self.kick(dt, forcing);
         self.drift(dt)
@@ -309,6 +316,7 @@ where
     /// As those of [`Stepper::step`].
     pub fn step_and_measure(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<Energy<T>, StepError> {
         check_size(dt)?;
+        forcing.suits_phase(P::FLOWS)?;
         self.prepare();
         let strain = self.strain_energy();
         self.keep_velocities();
@@ -533,7 +541,7 @@ fn refuse_unknown_stress<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>, P>
             particle,
             name: "stress",
             value: particles.stress[particle][(0, 0)].primal(),
-            allowed: L::LIMITS,
+            allowed: law.limits(),
         }),
     }
 }

@@ -86,6 +86,32 @@ pub enum Property {
     RotationKeepsEnergy,
     /// Stress follows a rotation of the material.
     Objective,
+    /// At small strain the energy is the work of the stress, whatever it is further on.
+    EnergyAtSmallStrain,
+    /// The stiffness at rest is that of the elastic constants.
+    ElasticConstants,
+    /// The strain for a change of the stress makes about that change.
+    StrainForChange,
+    /// A state made for a stress keeps it.
+    StartKeepsStress,
+    /// The law knows the stresses that it gives.
+    KnowsItsStress,
+    /// Material that is held in its shape gains no energy, and no path gives more than was put in.
+    NoEnergyFromNothing,
+    /// `update` is the response to slow or to fast strain.
+    UpdateIsALimit,
+    /// Stress does not fall while strain grows.
+    Stable,
+    /// `factors` gives what `for_each` does.
+    Factors,
+    /// `AT_FIXED_POINTS` says what `for_each_at_fixed_point` visits.
+    FixedPointsAsSaid,
+    /// A gradient that is said to be constant in a cell is.
+    ConstantGradient,
+    /// `integrate_cells` and `integrate_conserved_cells` stream what all cells together do.
+    CellsStreamTheSame,
+    /// `integrate_four` and `integrate_hard` stream what one cell after another does.
+    FourStreamTheSame,
 }
 
 impl fmt::Display for Property {
@@ -126,6 +152,19 @@ impl fmt::Display for Property {
             Self::EnergyIsWork => "the change of energy is the work of the stress",
             Self::RotationKeepsEnergy => "a rotation produces no energy",
             Self::Objective => "stress follows a rotation",
+            Self::EnergyAtSmallStrain => "at small strain the energy is the work of the stress",
+            Self::ElasticConstants => "the stiffness at rest is that of the elastic constants",
+            Self::StrainForChange => "the strain for a change of stress makes about that change",
+            Self::StartKeepsStress => "a state made for a stress keeps it",
+            Self::KnowsItsStress => "the law knows the stresses that it gives",
+            Self::NoEnergyFromNothing => "no more energy comes out than was put in",
+            Self::UpdateIsALimit => "`update` is the response to slow or to fast strain",
+            Self::Stable => "stress does not fall while strain grows",
+            Self::Factors => "`factors` gives the values and gradients of `for_each`",
+            Self::FixedPointsAsSaid => "AT_FIXED_POINTS says what points that stand still see",
+            Self::ConstantGradient => "a gradient said to be constant in a cell is",
+            Self::CellsStreamTheSame => "cells streamed alone stream what all together do",
+            Self::FourStreamTheSame => "four cells at once stream what one after another does",
         };
         f.write_str(words)
     }

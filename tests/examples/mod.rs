@@ -94,6 +94,7 @@ fn the_own_law_conforms() {
         energy_is_work: true,
         wave_speed_is_sharp: true,
         objective: true,
+        stable: true,
     };
     check_law::<f64, 1, _>(&law, &sample, &claims).unwrap();
 }

@@ -11,6 +11,7 @@ const ELASTIC: LawClaims = LawClaims {
     energy_is_work: true,
     wave_speed_is_sharp: true,
     objective: true,
+    stable: true,
 };
 
 /// Sharp only before it yields; what it dissipates is no energy.
@@ -18,6 +19,7 @@ const PLASTIC: LawClaims = LawClaims {
     energy_is_work: false,
     wave_speed_is_sharp: false,
     objective: true,
+    stable: true,
 };
 
 fn check<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(

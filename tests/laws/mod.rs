@@ -4,7 +4,9 @@
 //! decompositions (nalgebra's), from finite differences of an energy, or from rate equations integrated in many small steps.
 
 mod conformance;
+mod derivatives;
 mod drucker_prager;
+mod dual;
 mod elastic;
 mod fluid;
 mod invariance;

@@ -1,5 +1,6 @@
 //! Two phases: a saturated solid on the same stepper, all twelve methods.
 
+mod body_forces;
 pub mod column;
 mod consolidation;
 mod critical_step;

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::super::Moduli;
 use super::super::constant::{not_negative, require};
+use super::super::elastic_stretch::length;
 use super::super::von_mises::deviator;
 use crate::error::SetupError;
 use crate::scalar::Scalar;
@@ -121,9 +122,9 @@ impl<T: Scalar> Cone<T> {
         shear + self.friction * moduli.bulk() * strain.sum() - self.cohesion
     }
 
-    /// Returns principal trial strains to the cone or its apex.
+    /// Returns principal trial strains to the cone or its apex; also says by what their deviator was scaled.
     #[inline(always)]
-    pub(super) fn return_to(&self, moduli: &Moduli<T>, strain: &mut Vector3<T>) -> Yield {
+    pub(super) fn return_to(&self, moduli: &Moduli<T>, strain: &mut Vector3<T>) -> (Yield, T) {
         let (three, bulk) = (T::lit(3.0), moduli.bulk());
         let deviator = deviator(strain);
         let (shear, volume) = (shear_stress(moduli, &deviator), strain.sum());
@@ -131,7 +132,7 @@ impl<T: Scalar> Cone<T> {
         let yields = excess > T::zero();
         // Also leaves alone what is not a number.
         if !yields {
-            return Yield::Elastic;
+            return (Yield::Elastic, T::one());
         }
         let flow = excess / (moduli.mu + bulk * self.friction * self.dilation);
         let rest = shear - moduli.mu * flow;
@@ -139,16 +140,16 @@ impl<T: Scalar> Cone<T> {
             let mean = (volume - self.dilation * flow) / three;
             let scale = (rest / shear).max(T::zero());
             *strain = deviator.map(|e| e * scale + mean);
-            return Yield::Cone;
+            return (Yield::Cone, scale);
         }
         let mean = self.cohesion / (self.friction * bulk * three);
         *strain = Vector3::repeat(mean);
-        Yield::Apex
+        (Yield::Apex, T::zero())
     }
 }
 
 /// `sqrt(s : s / 2)` (Pa) of a deviatoric strain, `s = 2 mu e`.
 #[inline(always)]
 fn shear_stress<T: Scalar>(moduli: &Moduli<T>, deviator: &Vector3<T>) -> T {
-    T::lit(2.0).sqrt() * moduli.mu * deviator.norm()
+    T::lit(2.0).sqrt() * moduli.mu * length(deviator)
 }

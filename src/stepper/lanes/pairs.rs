@@ -188,7 +188,7 @@ mod tests {
         let positions: Vec<SVector<f64, D>> = (0..60).map(|p| SVector::from_fn(|a, _| place(p, a))).collect();
         let cells: Vec<Cell<D>> = positions.iter().map(|x| grid.locate(x).unwrap()).collect();
         let masses: Vec<f64> = (0..60).map(|p| 1.0 + (p % 7) as f64).collect();
-        let zeros = || Lattice::zeros(basis.dofs(&grid), basis.degree());
+        let zeros = || Lattice::zeros(basis.dofs(&grid), basis.reach());
         let (mut found, mut expected) = (zeros(), zeros());
         let bodies = Bodies {
             positions: &positions,

@@ -49,7 +49,7 @@ where
             }
             particle
                 .advance(law, dt, &(v * dt), &increment)
-                .map_err(|flaw| flaw.error(steps, p, L::LIMITS))?;
+                .map_err(|flaw| flaw.error(steps, p, law.limits()))?;
             match settle(grid, cell, particle.position) {
                 Some(crossed) => {
                     crossings += usize::from(crossed);

@@ -39,6 +39,9 @@ where
         }
         self.map_both_before(forcing);
         self.add_uneven_loads(&even, forcing);
+        if !self.body_forces.is_empty() {
+            self.add_body_forces_to_both();
+        }
     }
 
     /// Sums over the particles of solid mass, liquid mass and drag, each times `phi_i`; with `momenta` of both momenta too.

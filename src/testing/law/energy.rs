@@ -2,9 +2,10 @@
 
 use super::LawSample;
 use super::path::{Material, directions, modulus};
+use super::stiffness::{round_off, step};
 use crate::law::ConstitutiveLaw;
 use crate::scalar::Scalar;
-use crate::testing::failure::{Failure, Place, Property};
+use crate::testing::failure::{Failure, Place, Property, near};
 use crate::testing::worst::Worst;
 
 /// Increments of a path.
@@ -39,8 +40,32 @@ pub(super) fn is_work<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
     worst.judge(Property::EnergyIsWork, claimed)
 }
 
+/// The leading term in the strain, which is of second order: energy and work at a strain so small that what follows, of third order,
+/// is hardly more than the round-off of an energy.
+pub(super) fn at_small_strain<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
+    law: &L,
+    sample: &LawSample<T>,
+) -> Result<(), Failure> {
+    let unit = modulus::<T, D, L>(law, sample);
+    let strain = step::<T>().min(sample.strain);
+    let factor = T::lit(16.0);
+    let allowed = unit * (factor * strain * strain * strain + round_off::<T>());
+    directions::<T, D>().into_iter().try_for_each(|direction| {
+        let mut material = Material::<T, D, L, _>::new(law);
+        material.follow(&(direction * strain), 4);
+        let place = || component(&direction);
+        near(
+            Property::EnergyAtSmallStrain,
+            place,
+            material.work,
+            material.energy(),
+            allowed,
+        )
+    })
+}
+
 /// The largest component of a direction.
-fn component<T: Scalar, const D: usize>(direction: &nalgebra::SMatrix<T, D, D>) -> Place {
+pub(super) fn component<T: Scalar, const D: usize>(direction: &nalgebra::SMatrix<T, D, D>) -> Place {
     let (row, column) = direction.iamax_full();
     Place::Component(row, column)
 }

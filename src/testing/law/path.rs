@@ -47,10 +47,20 @@ impl<'a, T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> Material<'a, T, D,
 
     /// One increment, work by the trapezoidal rule.
     pub(super) fn update(&mut self, increment: &SMatrix<T, D, D>) {
+        self.update_over(None, increment);
+    }
+
+    /// One increment over a time (s), or without one.
+    fn update_over(&mut self, dt: Option<T>, increment: &SMatrix<T, D, D>) {
         let strain = symmetric(increment);
         let power = |m: &Self| m.stress.dot(&strain) * m.volume / T::lit(2.0);
         self.work += power(self);
-        self.law.update(increment, &mut self.stress, &mut self.state);
+        match dt {
+            Some(dt) => self
+                .law
+                .update_over(dt, increment, &mut self.stress, &mut self.state),
+            None => self.law.update(increment, &mut self.stress, &mut self.state),
+        }
         if self.law.large_strain() {
             self.volume *= determinant(&(SMatrix::identity() + increment));
         }
@@ -59,9 +69,14 @@ impl<'a, T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> Material<'a, T, D,
 
     /// `total` in `steps` equal increments.
     pub(super) fn follow(&mut self, total: &SMatrix<T, D, D>, steps: usize) {
+        self.follow_over(None, total, steps);
+    }
+
+    /// The same, each of them over a time (s), or without one.
+    pub(super) fn follow_over(&mut self, dt: Option<T>, total: &SMatrix<T, D, D>, steps: usize) {
         let increment = total / T::count(steps);
         for _ in 0..steps {
-            self.update(&increment);
+            self.update_over(dt, &increment);
         }
     }
 

@@ -10,12 +10,12 @@ use crate::testing::failure::{Failure, Place, Property, at_least, near};
 use crate::testing::worst::Worst;
 
 /// Round-off of a stress or an energy in units of the modulus: some ten operations on numbers of size one.
-fn round_off<T: Scalar>() -> T {
+pub(super) fn round_off<T: Scalar>() -> T {
     T::lit(16.0) * T::default_epsilon()
 }
 
 /// Step of the differences: truncation (its square) and round-off (over it) are then alike, `epsilon^(2/3)`.
-fn step<T: Scalar>() -> T {
+pub(super) fn step<T: Scalar>() -> T {
     T::default_epsilon().cbrt()
 }
 

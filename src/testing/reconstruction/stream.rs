@@ -39,13 +39,20 @@ pub(super) fn uneven<T: Scalar>(p: usize) -> T {
     T::lit(((p * p * 7 + p * 3 + 5) % 31) as f64) / T::lit(15.0) - T::one()
 }
 
-/// Round-off of a stream point's value over the largest particle value, if no digits cancel: the particles of
-/// a cell are summed, and each enters with a local coordinate rounded like the number of cells.
+/// Round-off of a stream point's value over the largest particle value, if no digits cancel: the particles of a cell are
+/// summed, and each enters with a local coordinate rounded like the number of cells, or like its distance from the origin
+/// in cells, at which positions themselves are rounded.
 pub(super) fn relative_error<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>) -> T {
     let fullest = (0..cloud.grid.cell_count()).map(|c| cloud.bins.particles_in(c).len());
     let cells = cloud.grid.cells().into_iter().max().unwrap_or(1);
-    let operations = 4 * D * (fullest.max().unwrap_or(0) + cells + 8);
-    T::count(operations) * T::default_epsilon()
+    let farthest = (0..D)
+        .map(|a| {
+            let (low, high) = (cloud.grid.min()[a].abs(), cloud.grid.max()[a].abs());
+            low.max(high) * cloud.grid.inverse_cell_size()[a]
+        })
+        .fold(T::zero(), T::max);
+    let operations = T::count(fullest.max().unwrap_or(0) + cells + 8) + farthest;
+    T::count(4 * D) * operations * T::default_epsilon()
 }
 
 pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(

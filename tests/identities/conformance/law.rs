@@ -20,6 +20,7 @@ const SMALL_STRAIN: LawClaims = LawClaims {
     energy_is_work: true,
     wave_speed_is_sharp: true,
     objective: false,
+    stable: true,
 };
 
 /// Hill's rate has a potential in 1-D only.
@@ -28,6 +29,7 @@ fn hill<const D: usize>() -> LawClaims {
         energy_is_work: D == 1,
         wave_speed_is_sharp: true,
         objective: true,
+        stable: true,
     }
 }
 
@@ -37,6 +39,7 @@ fn hyperelastic() -> LawClaims {
         energy_is_work: true,
         wave_speed_is_sharp: true,
         objective: true,
+        stable: true,
     }
 }
 
@@ -206,4 +209,167 @@ fn claims_that_are_too_bold_or_too_shy_are_found() {
         }),
         Property::EnergyIsWork
     );
+}
+
+/// What a plastic law can get wrong where its energy is not its work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fault {
+    None,
+    /// The energy is twice too large.
+    Energy,
+    /// The stress off the plane is forgotten: the stiffness is that of plane stress, the constants are told all the same.
+    OffPlane,
+    /// Strength falls with plastic strain.
+    Softening,
+    /// Held material is stressed more and more.
+    Grows,
+    /// `update_over` is another law.
+    Stiffer,
+    /// A start forgets half of the stress.
+    Start,
+    /// The strain for a change leads away from it.
+    Away,
+    /// The law does not know its own stress.
+    Unknown,
+}
+
+/// Von Mises plasticity at small strain, in the axes of the grid alone.
+#[derive(Clone, Copy, Debug)]
+struct Metal(Fault);
+
+impl Metal {
+    const YIELD: f64 = 400.0;
+
+    fn hardening(self) -> f64 {
+        if self.0 == Fault::Softening { -1e3 } else { 1e3 }
+    }
+
+    /// Shear modulus and Lame's other constant.
+    fn elastic(self) -> (f64, f64) {
+        let Moduli { lambda, mu } = moduli::<f64>();
+        match self.0 {
+            Fault::OffPlane => (mu, 2.0 * mu * lambda / (lambda + 2.0 * mu)),
+            _ => (mu, lambda),
+        }
+    }
+}
+
+/// Elastic strain and accumulated plastic shear.
+#[derive(Clone, Copy, Debug)]
+struct Strains<const D: usize>(SMatrix<f64, D, D>, f64);
+
+impl<const D: usize> Default for Strains<D> {
+    fn default() -> Self {
+        Self(SMatrix::zeros(), 0.0)
+    }
+}
+
+impl<const D: usize> ConstitutiveLaw<f64, D> for Metal {
+    type State = Strains<D>;
+
+    fn large_strain(&self) -> bool {
+        false
+    }
+
+    fn knows(&self, stress: &SMatrix<f64, D, D>, _state: &Strains<D>) -> bool {
+        self.0 != Fault::Unknown || stress.norm() == 0.0
+    }
+
+    fn update(
+        &self,
+        increment: &SMatrix<f64, D, D>,
+        stress: &mut SMatrix<f64, D, D>,
+        state: &mut Strains<D>,
+    ) {
+        let (mu, lambda) = self.elastic();
+        let Strains(elastic, plastic) = state;
+        *elastic += (increment + increment.transpose()) / 2.0;
+        let mean = SMatrix::identity() * (elastic.trace() / D as f64);
+        let deviator = *elastic - mean;
+        let trial = 2.0 * mu * deviator.norm();
+        let excess = trial - (Self::YIELD + self.hardening() * *plastic);
+        if excess > 0.0 {
+            let flow = excess / (2.0 * mu + self.hardening());
+            *plastic += flow;
+            *elastic = mean + deviator * (1.0 - 2.0 * mu * flow / trial);
+        }
+        *stress = SMatrix::identity() * (lambda * elastic.trace()) + *elastic * (2.0 * mu);
+    }
+
+    fn update_over(
+        &self,
+        dt: f64,
+        increment: &SMatrix<f64, D, D>,
+        stress: &mut SMatrix<f64, D, D>,
+        state: &mut Strains<D>,
+    ) {
+        match self.0 {
+            Fault::Grows => state.0 *= 1.0 + 0.1 * dt / (1.0 + dt),
+            Fault::Stiffer => return self.update(&(increment * 1.5), stress, state),
+            _ => {}
+        }
+        self.update(increment, stress, state);
+    }
+
+    fn start(&self, stress: &SMatrix<f64, D, D>, _off_plane: Option<f64>) -> Option<Strains<D>> {
+        let (mu, lambda) = self.elastic();
+        let trace = stress.trace() / (2.0 * mu + lambda * D as f64);
+        let elastic = (stress - SMatrix::identity() * (lambda * trace)) / (2.0 * mu);
+        let kept = if self.0 == Fault::Start { 0.5 } else { 1.0 };
+        Some(Strains(elastic * kept, 0.0))
+    }
+
+    fn strain_for(
+        &self,
+        change: &SMatrix<f64, D, D>,
+        _density: f64,
+        _stress: &SMatrix<f64, D, D>,
+        _state: &Strains<D>,
+    ) -> Option<SMatrix<f64, D, D>> {
+        let way = if self.0 == Fault::Away { -1.0 } else { 1.0 };
+        Some(change * (way / moduli::<f64>().p_wave()))
+    }
+
+    fn elastic_constants(&self) -> Option<Moduli<f64>> {
+        Some(moduli())
+    }
+
+    fn wave_speed(&self, density: f64, _stress: &SMatrix<f64, D, D>, _state: &Strains<D>) -> f64 {
+        let (mu, lambda) = self.elastic();
+        ((lambda + 2.0 * mu) / density).sqrt()
+    }
+
+    fn energy_density(&self, _stress: &SMatrix<f64, D, D>, Strains(elastic, _): &Strains<D>) -> f64 {
+        let (mu, lambda) = self.elastic();
+        let factor = if self.0 == Fault::Energy { 2.0 } else { 1.0 };
+        factor * (lambda * elastic.trace().powi(2) / 2.0 + mu * elastic.norm_squared())
+    }
+}
+
+fn found(fault: Fault) -> Option<Property> {
+    let claims = LawClaims {
+        energy_is_work: false,
+        wave_speed_is_sharp: false,
+        objective: false,
+        stable: true,
+    };
+    let in_plane = check_law::<f64, 2, _>(&Metal(fault), &sample(), &claims);
+    let in_space = check_law::<f64, 3, _>(&Metal(fault), &sample(), &claims);
+    // Without a plane there is nothing off it, but the constants are wrong there too.
+    let both = [in_plane, in_space].map(|outcome| outcome.err().map(|failure| failure.property));
+    assert_eq!(both[0], both[1], "{fault:?}");
+    both[0]
+}
+
+#[test]
+fn faults_of_a_law_whose_energy_is_not_its_work_are_found_and_named() {
+    assert_eq!(found(Fault::None), None);
+    assert_eq!(found(Fault::Energy), Some(Property::EnergyAtSmallStrain));
+    assert_eq!(found(Fault::OffPlane), Some(Property::ElasticConstants));
+    assert_eq!(found(Fault::Softening), Some(Property::Stable));
+    assert_eq!(found(Fault::Grows), Some(Property::NoEnergyFromNothing));
+    assert_eq!(found(Fault::Stiffer), Some(Property::UpdateIsALimit));
+    assert_eq!(found(Fault::Start), Some(Property::StartKeepsStress));
+    assert_eq!(found(Fault::Away), Some(Property::StrainForChange));
+    assert_eq!(found(Fault::Unknown), Some(Property::KnowsItsStress));
 }
