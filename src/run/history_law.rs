@@ -163,6 +163,28 @@ macro_rules! each_law {
                 }
             }
 
+            fn off_plane_stress(&self, stress: &SMatrix<T, D, D>, state: &Self::State) -> Option<T> {
+                match (self, state) {
+                    $((Self::$law(law), History::$history(own)) => {
+                        ConstitutiveLaw::off_plane_stress(law, stress, own)
+                    })+
+                    $((Self::$law(law), _) => {
+                        ConstitutiveLaw::off_plane_stress(law, stress, &Default::default())
+                    })+
+                }
+            }
+
+            fn plastic_strain(&self, state: &Self::State) -> Option<T> {
+                match (self, state) {
+                    $((Self::$law(law), History::$history(own)) => {
+                        ConstitutiveLaw::<T, D>::plastic_strain(law, own)
+                    })+
+                    $((Self::$law(law), _) => {
+                        ConstitutiveLaw::<T, D>::plastic_strain(law, &Default::default())
+                    })+
+                }
+            }
+
             fn energy_density(&self, stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
                 match (self, state) {
                     $((Self::$law(law), History::$history(own)) => law.energy_density(stress, own),)+

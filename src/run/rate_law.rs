@@ -49,6 +49,16 @@ macro_rules! one_of_laws {
                 }
             }
 
+            fn off_plane_stress(
+                &self,
+                stress: &SMatrix<T, $dimension, $dimension>,
+                state: &(),
+            ) -> Option<T> {
+                match self {
+                    $(Self::$law(law) => law.off_plane_stress(stress, state)),+
+                }
+            }
+
             fn energy_density(&self, stress: &SMatrix<T, $dimension, $dimension>, state: &()) -> T {
                 match self {
                     $(Self::$law(law) => law.energy_density(stress, state)),+

@@ -8,6 +8,7 @@ mod drucker_prager;
 mod elastic;
 mod fluid;
 mod invariance;
+mod off_plane;
 mod rates;
 mod spectral;
 mod start;
