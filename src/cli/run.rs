@@ -103,6 +103,7 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         dofs,
         steps,
         time,
+        velocity_time,
         time_step,
         wall_seconds,
         particle_steps_per_second,
@@ -134,7 +135,7 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         "  model         {particles} particles, {cells} cells, {dofs} DOFs"
     ));
     lines.push(format!(
-        "  time          {steps} steps of {time_step:.3e} s to {time:.6} s"
+        "  time          {steps} steps of {time_step:.3e} s to {time:.6} s; velocities are those of {velocity_time:.6} s"
     ));
     lines.push(format!(
         "  speed         {wall_seconds:.3} s, {:.2} million particle steps per second, {bytes_per_particle:.0} bytes per particle",

@@ -7,9 +7,10 @@ use super::Progress;
 use super::checkpoint;
 use super::critical_step_in;
 use super::error::RunError;
-use super::frames::Frames;
+use super::frames::{Frames, Moment};
 use super::limits::remedy;
 use super::loads::forcing;
+use super::particle_fields::Snapshot;
 use super::schedule::Schedule;
 use super::space::InSpace;
 use crate::scene::Scene;
@@ -133,7 +134,7 @@ where
         start.map_err(|value| RunError::NoEnergyAtStart { value })?;
     }
     if from.done == 0 && frames.begin_at_start() {
-        frames.write(Some(0), 0.0, &simulation.particles(), &simulation.liquid())?;
+        write_frame(journey, 0, frames, simulation)?;
     }
     let driver = scene.driver()?;
     progress(Progress {
@@ -147,7 +148,8 @@ where
         if let Some(driver) = &driver {
             simulation.set_body_forces(&|x| driver.body_force(x, schedule.time(step)));
         }
-        if let Err(source) = simulation.step(dt, &forcing) {
+        let kick = schedule.kick(step, scene.time.half_kick);
+        if let Err(source) = simulation.step_with_kick(kick, dt, &forcing) {
             let (critical, remedy) = limit::<D>(scene);
             return Err(RunError::Stopped {
                 source,
@@ -164,8 +166,7 @@ where
             march.wall += begun.elapsed();
             check_energy(scene, simulation, &mut march, &due, (done, dt))?;
             if due.frame && frames.are_wanted() {
-                let (particles, liquid) = (simulation.particles(), simulation.liquid());
-                frames.write(Some(done), schedule.time(done), &particles, &liquid)?;
+                write_frame(journey, done, frames, simulation)?;
             }
             if due.checkpoint {
                 let energy = march.energy;
@@ -177,6 +178,20 @@ where
         }
     }
     Ok(march)
+}
+
+fn write_frame<const D: usize>(
+    journey: &Journey<'_>,
+    done: usize,
+    frames: &mut Frames<'_>,
+    simulation: &dyn Simulation<D>,
+) -> Result<(), RunError> {
+    let snapshot = Snapshot {
+        particles: &simulation.particles(),
+        liquid: &simulation.liquid(),
+        law: &simulation.material_fields(),
+    };
+    frames.write(Moment::after(journey.scene, journey.schedule, done), &snapshot)
 }
 
 /// Samples the energy if that is due. A checkpoint needs one too: of numbers that are none nothing good comes.

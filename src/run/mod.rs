@@ -7,10 +7,13 @@ mod fields;
 mod frames;
 mod history_law;
 mod initial;
+mod invariants;
 mod limits;
 mod loads;
 mod march;
 mod norms;
+mod particle_cloud;
+mod particle_fields;
 mod particle_table;
 mod rate_law;
 mod reference;
@@ -23,6 +26,7 @@ mod surface;
 pub use checkpoint::CheckpointError;
 pub use error::RunError;
 pub use fields::FieldValues;
+pub use invariants::Invariants;
 pub use limits::mechanism;
 pub use norms::{ErrorNorms, Exact};
 pub use space::InSpace;
@@ -31,16 +35,17 @@ pub use summary::{ConservationSummary, EnergySummary, MethodSummary, Summary};
 use std::path::{Path, PathBuf};
 
 use checkpoint::Checkpoint;
-use frames::Frames;
+use frames::{Frames, Moment};
 use loads::forcing;
 use march::{ENERGY_SAMPLES, Journey, Milestone, march};
+use particle_fields::Snapshot;
 use schedule::Schedule;
 
 use crate::output::Folder;
 use crate::particles::Particles;
 use crate::phase::PoreLiquid;
 use crate::scene::Scene;
-use crate::stepper::{CriticalStep, Simulation};
+use crate::stepper::{CriticalStep, MaterialFields, Simulation};
 
 /// How far a run has come.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +65,8 @@ pub struct Outcome<const D: usize = 1> {
     pub particles: Particles<f64, D>,
     /// Their liquid; empty in one phase.
     pub liquid: Vec<PoreLiquid<f64, D>>,
+    /// What the law knows of them besides the stress.
+    pub law: MaterialFields,
     /// Reference at the particles; empty without one.
     pub exact: Exact,
     /// Files written.
@@ -75,6 +82,12 @@ impl<const D: usize> Outcome<D> {
     /// The same one by one: of many particles there need not be all fields at a time.
     pub fn for_each_field(&self, f: impl FnMut(FieldValues)) {
         fields::for_each_field(&self.particles, &self.liquid, &self.exact, f);
+    }
+
+    /// Mean and von Mises stress of the particles, with the stress off the plane; none where the law does not know that, nor along one
+    /// axis.
+    pub fn invariants(&self) -> impl Iterator<Item = Invariants> {
+        particle_fields::invariants(&self.particles.stress, &self.law)
     }
 }
 
@@ -148,6 +161,9 @@ where
         None => (Milestone::default(), Vec::new()),
     };
     let mut frames = Frames::new(scene, folder, written);
+    if frames.are_wanted() {
+        frames.bodies = initial::body_sizes::<D>(scene)?;
+    }
     warnings.extend(frames.warning());
     let journey = Journey {
         scene,
@@ -158,8 +174,14 @@ where
     let march = march(&journey, simulation.as_mut(), &mut frames, progress)?;
     let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, &march);
     summary.warnings = warnings;
+    let law = simulation.material_fields();
     let (particles, liquid) = simulation.into_particles();
-    frames.write(None, schedule.end, &particles, &liquid)?;
+    let snapshot = Snapshot {
+        particles: &particles,
+        liquid: &liquid,
+        law: &law,
+    };
+    frames.write(Moment::end(scene, &schedule), &snapshot)?;
     let exact = scene.exact(&particles, &schedule)?;
     summary.errors = ErrorNorms::all(&particles, &liquid, &exact);
     let mut files = frames.files;
@@ -168,6 +190,7 @@ where
         summary,
         particles,
         liquid,
+        law,
         exact,
         files,
     })

@@ -111,6 +111,9 @@ pub struct Summary {
     pub steps: usize,
     /// Time reached (s).
     pub time: f64,
+    /// Time (s) at which the velocities live that a run leaves behind: the middle of the last step. Positions and stresses are those of
+    /// `time`.
+    pub velocity_time: f64,
     /// Size of a step (s).
     pub time_step: f64,
     /// Time of the step loop on the clock (s); of a resumed run that of the steps taken since.
@@ -168,6 +171,7 @@ impl Summary {
             dofs: simulation.dof_count(),
             steps: schedule.steps,
             time: schedule.end,
+            velocity_time: schedule.velocity_time(schedule.steps, scene.time.half_kick),
             time_step: schedule.dt,
             wall_seconds,
             particle_steps_per_second,

@@ -36,6 +36,9 @@ pub struct TimeSpec {
     pub step: StepSize,
     /// End of the run (s), positive.
     pub end: f64,
+    /// Whether the first kick is half a step, so that velocities given at the start are those of time zero and the run is of second
+    /// order in time; otherwise they count as those of half a step before, as in the papers.
+    pub half_kick: bool,
 }
 
 /// Floating-point type of the computation.

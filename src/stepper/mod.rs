@@ -12,7 +12,8 @@
 //!    volume by $\det(1+\Delta\varepsilon)$ at large strain.
 //!
 //! Basis values of all stages are taken at the positions at the start of the step. Velocity lives half a step
-//! early: started from $v(0)$, after $n$ steps it approximates $v(n\Delta t - \Delta t/2)$.
+//! early: started from $v(0)$, after $n$ steps it approximates $v(n\Delta t - \Delta t/2)$, to first order because the first kick is a
+//! whole step, or to second order if that is half a step ([`Stepper::step_with_kick`]).
 
 mod acceleration;
 mod advance;
@@ -31,6 +32,7 @@ mod ghost;
 mod lanes;
 mod liquid;
 mod mapping;
+mod material_fields;
 mod matrix;
 mod order;
 mod pairs;
@@ -43,6 +45,7 @@ mod window;
 pub use critical::{CriticalStep, Mechanism};
 pub use diagnostics::{Conservation, Diagnostics, Energy};
 pub use forcing::{FaceCondition, Forcing, PoreCondition, SurfacePoint};
+pub use material_fields::MaterialFields;
 pub use simulation::Simulation;
 
 use nalgebra::{SMatrix, SVector};
@@ -287,19 +290,35 @@ where
     /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the law. The particles then hold the
     /// state in which that was noticed.
     pub fn step(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
-        if !dt.is_finite() || dt <= T::zero() {
-            return Err(StepError::StepSize { value: dt.primal() });
+        self.step_with_kick(dt, dt, forcing)
+    }
+
+    /// The same with velocities that gain `kick` (s) times their accelerations, while positions and strains go on by `dt` (s).
+    ///
+    /// Velocities live in the middle of steps: the kick from the middle of the step before, of size `before`, to that of this one is
+    /// `(before + dt) / 2`, of second order also where steps change, and `dt / 2` in the first step of a run, whose velocities are those of
+    /// time zero. [`Stepper::step`] takes `dt` always, as the papers do: then the velocities given at the start count as those of half a
+    /// step before.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::step`]; the kick too must be positive and finite.
+    pub fn step_with_kick(&mut self, kick: T, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
+        for size in [dt, kick] {
+            if !size.is_finite() || size <= T::zero() {
+                let value = size.primal();
+                return Err(StepError::StepSize { value });
+            }
         }
         self.prepare();
         if P::FLOWS {
             self.assemble_both(forcing);
-            self.accelerate_both(dt, forcing);
-            self.update_both_velocities(dt, forcing);
+            self.accelerate_both(kick, forcing);
+            self.update_both_velocities(kick, forcing);
         } else {
             self.assemble(forcing);
             self.accelerate(forcing);
-            self.stop_at_walls(dt, forcing);
-            self.update_velocities(dt, forcing);
+            self.stop_at_walls(kick, forcing);
+            self.update_velocities(kick, forcing);
         }
         self.steps += 1;
         self.time += dt;

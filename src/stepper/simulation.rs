@@ -5,7 +5,8 @@ use std::io::{self, Read, Write};
 use nalgebra::SVector;
 
 use super::{
-    Conservation, CriticalStep, Diagnostics, Energy, FaceCondition, Forcing, PoreCondition, Stepper,
+    Conservation, CriticalStep, Diagnostics, Energy, FaceCondition, Forcing, MaterialFields, PoreCondition,
+    Stepper,
 };
 use crate::basis::BasisFamily;
 use crate::error::{RestoreError, StepError};
@@ -25,6 +26,12 @@ pub trait Simulation<const D: usize> {
     /// As there.
     fn step(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError>;
 
+    /// See [`Stepper::step_with_kick`].
+    ///
+    /// # Errors
+    /// As there.
+    fn step_with_kick(&mut self, kick: f64, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError>;
+
     /// See [`Stepper::set_body_forces`].
     fn set_body_forces(&mut self, force: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>);
 
@@ -37,6 +44,9 @@ pub trait Simulation<const D: usize> {
 
     /// The liquid of every particle; empty where none flows.
     fn liquid(&self) -> Vec<PoreLiquid<f64, D>>;
+
+    /// See [`Stepper::material_fields`].
+    fn material_fields(&self) -> MaterialFields;
 
     /// See [`Stepper::diagnostics`].
     fn diagnostics(&self) -> Diagnostics<f64>;
@@ -86,6 +96,10 @@ where
         self.step(T::lit(dt), &cast_forcing(forcing))
     }
 
+    fn step_with_kick(&mut self, kick: f64, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError> {
+        self.step_with_kick(T::lit(kick), T::lit(dt), &cast_forcing(forcing))
+    }
+
     fn set_body_forces(&mut self, force: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>) {
         self.set_body_forces(|x| force(&x.map(T::primal)).map(T::lit));
     }
@@ -118,6 +132,10 @@ where
             }
         })
         .collect()
+    }
+
+    fn material_fields(&self) -> MaterialFields {
+        self.material_fields()
     }
 
     fn diagnostics(&self) -> Diagnostics<f64> {

@@ -20,7 +20,7 @@ impl fmt::Debug for Identity<'_> {
         let Scene {
             title: _,
             grid,
-            time: TimeSpec { step, end },
+            time: TimeSpec { step, end, half_kick },
             method,
             material,
             bodies,
@@ -30,7 +30,9 @@ impl fmt::Debug for Identity<'_> {
             output: _,
         } = self.0;
         let mut text = f.debug_struct("scene");
-        text.field("grid", grid).field("time.step", step);
+        text.field("grid", grid)
+            .field("time.step", step)
+            .field("time.half_kick", half_kick);
         if let StepSize::Auto { .. } = step {
             text.field("time.end", end);
         }
@@ -158,6 +160,7 @@ mod tests {
         let cases = [
             ("grid.cells=[8]", "grid.cells", "4", "8"),
             ("time.step=0.05", "time.step", "0.1", "0.05"),
+            ("time.half_kick=true", "time.half_kick", "false", "true"),
             ("method.basis=dual-domain", "method.basis", "Linear", "DualDomain"),
             ("method.scalar=f32", "method.scalar", "F64", "F32"),
             ("material.density=2", "material.phases.density", "1.0", "2.0"),
