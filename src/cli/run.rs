@@ -115,6 +115,7 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         conservation,
         energy,
         warnings: _,
+        removed,
     } = summary;
     let mut lines = vec![title.clone()];
     lines.push(format!(
@@ -180,6 +181,12 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
             "  energy        {:.6e} {unit} at the end; none at the start",
             energy.last
         )),
+    }
+    if let (Some(first), Some(last)) = (removed.first(), removed.last()) {
+        lines.push(match removed.len() {
+            1 => format!("  removed       {first} of a former run"),
+            n => format!("  removed       {n} files of a former run, {first} to {last}"),
+        });
     }
     for file in files {
         lines.push(format!("  wrote         {}", file.display()));

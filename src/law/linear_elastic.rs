@@ -30,7 +30,7 @@ pub(super) fn hooke<T: Scalar, const D: usize>(moduli: &Moduli<T>, e: &SMatrix<T
 
 /// The strain without parts off the plane that [`hooke`] gives this stress.
 #[inline]
-fn hooke_strain<T: Scalar, const D: usize>(
+pub(crate) fn hooke_strain<T: Scalar, const D: usize>(
     moduli: &Moduli<T>,
     stress: &SMatrix<T, D, D>,
 ) -> SMatrix<T, D, D> {

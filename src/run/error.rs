@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::checkpoint::CheckpointError;
-use crate::error::{GridError, SetupError, StepError};
+use crate::error::{GridError, SetupError, StepError, named};
 use crate::method::Method;
 use crate::output::OutputError;
 use crate::reference::ReferenceError;
@@ -56,6 +56,21 @@ pub enum RunError {
     EmptyBody {
         /// Number of the body, from 0.
         index: usize,
+    },
+    /// A stress at the start that the law cannot bear.
+    #[error(
+        "body.{body}.stress: at {position:.4?} m it is {}, which the law cannot start under; {allowed}",
+        named(stress)
+    )]
+    InitialStress {
+        /// Number of the body, from 0.
+        body: usize,
+        /// Where (m).
+        position: Vec<f64>,
+        /// Components of the stress (Pa) by name.
+        stress: Vec<(String, f64)>,
+        /// What the law bears instead.
+        allowed: String,
     },
     /// `step = "auto"` on particles that nothing resists.
     #[error(

@@ -7,7 +7,7 @@ use super::particle_cloud::point_cloud;
 use super::particle_fields::Snapshot;
 use super::particle_table::particle_table;
 use super::schedule::Schedule;
-use crate::output::{Folder, Series, SeriesFrame};
+use crate::output::{Folder, Series, SeriesFrame, is_frame};
 use crate::scene::{ParticleOutput, Scene};
 
 /// Writes particles in the format that the scene asks for, and remembers what was written.
@@ -90,6 +90,17 @@ impl<'a> Frames<'a> {
                 self.files.len()
             )
         })
+    }
+
+    /// Removes what a former run left in the folder: temporary files of killed processes and, unless this run goes on with it, its frames.
+    /// Returns their names.
+    pub(super) fn clear(&self, resumed: bool) -> Vec<String> {
+        let csv = self.scene.output.particles == ParticleOutput::Csv;
+        // A table of the end is replaced when there is another.
+        let is_old = |name: &str| !resumed && (is_frame(name) || !csv && name == "particles.csv");
+        self.folder
+            .map(|folder| folder.remove_left_over(is_old))
+            .unwrap_or_default()
     }
 
     /// Whether anything is written at all.

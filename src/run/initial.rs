@@ -20,6 +20,8 @@ pub(super) struct Initial<const D: usize> {
     /// In two phases one for each particle.
     pub(super) liquid: Vec<PoreLiquid<f64, D>>,
     pub(super) surface: Vec<SurfacePoint<f64>>,
+    /// Number of the first particle of each body.
+    pub(super) first_particles: Vec<usize>,
 }
 
 /// The particles of one body, and where each is in its lattice.
@@ -57,6 +59,7 @@ where
         }
         all.surface
             .extend(surfaces(scene, body, &filling, all.particles.len())?);
+        all.first_particles.push(all.particles.len());
         append(&mut all.particles, filling.particles);
         move_to(&mut all.liquid, liquid);
     }
@@ -91,7 +94,12 @@ pub(super) fn keep<const D: usize>(
     Ok((lattice, kept))
 }
 
-fn fill<const D: usize>(scene: &Scene, body: &Body, grid: &Grid<f64, D>) -> Result<Filling<D>, RunError> {
+/// The particles of a body before they are given their initial values.
+pub(super) fn fill<const D: usize>(
+    scene: &Scene,
+    body: &Body,
+    grid: &Grid<f64, D>,
+) -> Result<Filling<D>, RunError> {
     let (lattice, kept) = keep(body, grid)?;
     let mut random = fastrand::Rng::with_seed(body.seed);
     let (spacing, volume) = (lattice.spacing(), lattice.volume());

@@ -22,6 +22,7 @@ mod space;
 mod state;
 mod summary;
 mod surface;
+mod warnings;
 
 pub use checkpoint::CheckpointError;
 pub use error::RunError;
@@ -154,7 +155,9 @@ where
     let schedule = Schedule::new(scene)?;
     let open = |path: &Path| Checkpoint::open(path, scene, &schedule);
     let checkpoint = checkpoint.map(open).transpose()?;
+    let resumed = checkpoint.is_some();
     let mut warnings = limits::warnings(scene, &schedule, || critical_step_in(scene))?;
+    warnings.extend(warnings::warnings::<D>(scene, Some(&schedule))?);
     let mut simulation = scene.build(schedule.dt)?;
     let (from, written) = match checkpoint {
         Some(checkpoint) => checkpoint.restore(simulation.as_mut())?,
@@ -164,6 +167,7 @@ where
     if frames.are_wanted() {
         frames.bodies = initial::body_sizes::<D>(scene)?;
     }
+    let removed = frames.clear(resumed);
     warnings.extend(frames.warning());
     let journey = Journey {
         scene,
@@ -174,6 +178,7 @@ where
     let march = march(&journey, simulation.as_mut(), &mut frames, progress)?;
     let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, &march);
     summary.warnings = warnings;
+    summary.removed = removed;
     let law = simulation.material_fields();
     let (particles, liquid) = simulation.into_particles();
     let snapshot = Snapshot {
@@ -183,6 +188,8 @@ where
     };
     frames.write(Moment::end(scene, &schedule), &snapshot)?;
     let exact = scene.exact(&particles, &schedule)?;
+    let strained = warnings::small_strain(scene, &particles, schedule.dt)?;
+    summary.warnings.extend(strained);
     summary.errors = ErrorNorms::all(&particles, &liquid, &exact);
     let mut files = frames.files;
     files.extend(march.checkpoint);
@@ -238,6 +245,23 @@ where
     };
     let march = march(&journey, simulation.as_mut(), &mut frames, &mut |_| {})?;
     Ok(march.wall.as_secs_f64())
+}
+
+/// What a user should know of a scene before it runs, besides its step; a run says it too.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn warnings(scene: &Scene) -> Result<Vec<String>, RunError> {
+    let mut found = limits::of_method(scene);
+    found.extend(in_dimension!(scene, warnings_in(scene))?);
+    Ok(found)
+}
+
+fn warnings_in<const D: usize>(scene: &Scene) -> Result<Vec<String>, RunError>
+where
+    Scene: InSpace<D>,
+{
+    warnings::warnings::<D>(scene, None)
 }
 
 /// Largest stable time step (s) of the scene's initial layout; `None` if nothing resists a motion.

@@ -137,6 +137,10 @@ pub struct Summary {
     /// What the user should know although the run was done.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+    /// Files that a former run had left in the output folder and that were removed: frames that this run does not go on with, and temporary
+    /// files of killed processes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub removed: Vec<String>,
 }
 
 impl Summary {
@@ -188,6 +192,7 @@ impl Summary {
                 lowest_ratio: ratio(energy.lowest),
             },
             warnings: Vec::new(),
+            removed: Vec::new(),
         }
     }
 }
