@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use materialpoint::output::Folder;
-use materialpoint::run::{InSpace, Outcome, Progress, RunError, Summary, resume_in, run_in};
+use materialpoint::run::{InSpace, Outcome, Progress, RunError, Summary, resume_in, run_in, warnings};
 use materialpoint::scene::{Scene, SceneError};
 use materialpoint::study::{write_fields, write_maps};
 
@@ -40,6 +40,10 @@ pub(super) fn run_scene(name: &str, resume: Option<&Path>, shared: &Shared) -> R
         _ => in_space::<3>(&begin, &mut progress),
     };
     progress_bar.finish_and_clear();
+    if let Err(Failure::Stopped(_)) = done {
+        // What was said of the scene is not lost with the summary: it may be why.
+        warn(&warnings(&scene)?);
+    }
     let (summary, files) = done?;
     warn(&summary.warnings);
     if shared.json {
@@ -136,7 +140,8 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         "  model         {particles} particles, {cells} cells, {dofs} DOFs"
     ));
     lines.push(format!(
-        "  time          {steps} steps of {time_step:.3e} s to {time:.6} s; velocities are those of {velocity_time:.6} s"
+        "  time          {steps} steps of {time_step:.3e} s to {time:.6} s; velocities are those of \
+         {velocity_time:.6} s"
     ));
     lines.push(format!(
         "  speed         {wall_seconds:.3} s, {:.2} million particle steps per second, {bytes_per_particle:.0} bytes per particle",

@@ -58,8 +58,9 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hill<T> {
         (modulus.max(T::zero()) / density).sqrt()
     }
 
-    /// That of small strain is exact here too, step by step: spin has no part in the trace, so `tr(sigma)` gains
-    /// `(2 (lambda + mu) - tr(sigma)) tr(d)` in the plane and the stress off it `(lambda - sigma_zz) tr(d)`, which keeps their ratio.
+    /// That of small strain is exact here too, step by step: spin has no part in the trace, so `tr(sigma)`
+    /// gains `(2 (lambda + mu) - tr(sigma)) tr(d)` in the plane and the stress off it `(lambda - sigma_zz)
+    /// tr(d)`, which keeps their ratio.
     fn off_plane_stress(&self, stress: &SMatrix<T, D, D>, _state: &()) -> Option<T> {
         unstrained_stress(&self.moduli, stress)
     }

@@ -56,7 +56,8 @@ pub(super) fn hooke_strain_at<T: Scalar, const D: usize>(
     hooke_strain(moduli, stress) * (moduli.p_wave() / modulus)
 }
 
-/// Stress (Pa) along the axes that the grid does not have and along which nothing is strained: in the plane `nu (sigma_xx + sigma_yy)`.
+/// Stress (Pa) along the axes that the grid does not have and along which nothing is strained: in the plane
+/// `nu (sigma_xx + sigma_yy)`.
 #[inline]
 pub(super) fn unstrained_stress<T: Scalar, const D: usize>(
     moduli: &Moduli<T>,

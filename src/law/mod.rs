@@ -122,18 +122,18 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Sync {
     /// Speed (m/s) of the fastest wave in material of the given current `density` (kg/m3).
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T;
 
-    /// Cauchy stress (Pa) along the axes that the grid does not have, alike if there are two of them; `None` where there is no such axis, or
-    /// where the law does not know it.
+    /// Cauchy stress (Pa) along the axes that the grid does not have, alike if there are two of them; `None`
+    /// where there is no such axis, or where the law does not know it.
     ///
-    /// It is no part of the motion, so nothing in a step asks for it; files and pictures do, because mean and von Mises stress are
-    /// those of all three axes.
+    /// It is no part of the motion, so nothing in a step asks for it; files and pictures do, because mean and
+    /// von Mises stress are those of all three axes.
     #[inline]
     fn off_plane_stress(&self, _stress: &SMatrix<T, D, D>, _state: &Self::State) -> Option<T> {
         None
     }
 
-    /// Accumulated plastic strain, the integral of `sqrt(2/3 e : e)` with the deviator `e` of the plastic strain rate; `None` of a law
-    /// that knows none. Files ask for it, no step does.
+    /// Accumulated plastic strain, the integral of `sqrt(2/3 e : e)` with the deviator `e` of the plastic
+    /// strain rate; `None` of a law that knows none. Files ask for it, no step does.
     #[inline]
     fn plastic_strain(&self, _state: &Self::State) -> Option<T> {
         None

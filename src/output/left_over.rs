@@ -18,12 +18,14 @@ const FILES: [(&str, &str); 8] = [
     ("checkpoint", ".mpm"),
     ("probe", ""),
 ];
-/// Where processes cannot be looked up, a temporary file that nothing was written to for so long is nobody's any more.
+/// Where processes cannot be looked up, a temporary file that nothing was written to for so long is nobody's
+/// any more.
 const LONG: Duration = Duration::from_secs(3600);
 
 impl Folder {
-    /// Removes temporary files of processes that were killed and, if `frames` says so of a name, older frames; returns the names of what was
-    /// removed, in order. Files that we do not name so are never touched, and what cannot be removed stays.
+    /// Removes temporary files of processes that were killed and, if `frames` says so of a name, older
+    /// frames; returns the names of what was removed, in order. Files that we do not name so are never
+    /// touched, and what cannot be removed stays.
     pub(crate) fn remove_left_over(&self, frames: impl Fn(&str) -> bool) -> Vec<String> {
         let Ok(entries) = fs::read_dir(self.path()) else {
             return Vec::new();
@@ -44,7 +46,8 @@ impl Folder {
     }
 }
 
-/// Whether a name is that of a frame on the way, `particles-00000010.csv` or `particles-000001.vtu`, or of their index.
+/// Whether a name is that of a frame on the way, `particles-00000010.csv` or `particles-000001.vtu`, or of
+/// their index.
 pub(crate) fn is_frame(name: &str) -> bool {
     let numbered = |end: &str, digits: usize| {
         let number = name

@@ -13,7 +13,8 @@ const DOUBLINGS: usize = 60;
 /// Names of the normal stresses.
 const NAMES: [&str; 3] = ["xx", "yy", "zz"];
 
-/// What `law` bears in place of a stress that it cannot start under, in words: for each normal stress the range beside the others.
+/// What `law` bears in place of a stress that it cannot start under, in words: for each normal stress the
+/// range beside the others.
 pub(super) fn bearable<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
     law: &L,
     stress: &SMatrix<T, D, D>,
@@ -61,7 +62,8 @@ impl<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> Search<'_, T, D, L> {
         self.law.start(&stress, self.off_plane).is_some()
     }
 
-    /// The range around the mean of the other normal stresses, if that is borne: strength is least where they differ most.
+    /// The range around the mean of the other normal stresses, if that is borne: strength is least where they
+    /// differ most.
     fn range(&self) -> Option<String> {
         let (axis, stress) = (self.axis, self.stress);
         let others = stress.trace() - stress[(axis, axis)];
@@ -87,7 +89,8 @@ impl<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> Search<'_, T, D, L> {
         })
     }
 
-    /// The last value that is borne from `borne` on in the direction of `step`; `None` if there seems to be no end.
+    /// The last value that is borne from `borne` on in the direction of `step`; `None` if there seems to be
+    /// no end.
     fn end(&self, mut borne: T, mut step: T) -> Option<T> {
         let mut beyond = None;
         for _ in 0..DOUBLINGS {

@@ -100,7 +100,7 @@ pub enum RunError {
         remedy: &'static str,
     },
     /// The run stopped on the way.
-    #[error("{source}; {}", advice(*dt, *critical, remedy))]
+    #[error("{source}; {}{note}", advice(*dt, *critical, remedy))]
     Stopped {
         /// What happened, at which step, to which particle.
         source: StepError,
@@ -110,6 +110,8 @@ pub enum RunError {
         critical: Option<f64>,
         /// What helps against a step above it, besides a smaller one.
         remedy: &'static str,
+        /// What else was seen in the particles as they are then: empty, or the end of a sentence.
+        note: String,
     },
 }
 

@@ -92,8 +92,8 @@ impl<'a> Frames<'a> {
         })
     }
 
-    /// Removes what a former run left in the folder: temporary files of killed processes and, unless this run goes on with it, its frames.
-    /// Returns their names.
+    /// Removes what a former run left in the folder: temporary files of killed processes and, unless this run
+    /// goes on with it, its frames. Returns their names.
     pub(super) fn clear(&self, resumed: bool) -> Vec<String> {
         let csv = self.scene.output.particles == ParticleOutput::Csv;
         // A table of the end is replaced when there is another.

@@ -12,7 +12,8 @@ pub struct Invariants {
 }
 
 impl Invariants {
-    /// Of a stress (Pa) in `D` axes with `off_plane` (Pa) along each of the others; in space that is not looked at.
+    /// Of a stress (Pa) in `D` axes with `off_plane` (Pa) along each of the others; in space that is not
+    /// looked at.
     pub fn of<const D: usize>(stress: &SMatrix<f64, D, D>, off_plane: f64) -> Self {
         let others = 3_usize.saturating_sub(D) as f64;
         let off_plane = if D < 3 { off_plane } else { 0.0 };

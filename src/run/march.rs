@@ -13,6 +13,7 @@ use super::loads::forcing;
 use super::particle_fields::Snapshot;
 use super::schedule::Schedule;
 use super::space::InSpace;
+use super::warnings;
 use crate::scene::Scene;
 use crate::stepper::Simulation;
 
@@ -151,11 +152,18 @@ where
         let kick = schedule.kick(step, scene.time.half_kick);
         if let Err(source) = simulation.step_with_kick(kick, dt, &forcing) {
             let (critical, remedy) = limit::<D>(scene);
+            // Strains of an unstable step say nothing of the scene.
+            let stable = critical.is_none_or(|limit| dt <= limit);
+            let strained = match stable {
+                true => warnings::small_strain(scene, &simulation.particles(), schedule.dt)?,
+                false => None,
+            };
             return Err(RunError::Stopped {
                 source,
                 dt,
                 critical,
                 remedy,
+                note: strained.map_or_else(String::new, |warning| format!("; {warning}")),
             });
         }
         march.steps += 1;

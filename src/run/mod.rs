@@ -85,8 +85,8 @@ impl<const D: usize> Outcome<D> {
         fields::for_each_field(&self.particles, &self.liquid, &self.exact, f);
     }
 
-    /// Mean and von Mises stress of the particles, with the stress off the plane; none where the law does not know that, nor along one
-    /// axis.
+    /// Mean and von Mises stress of the particles, with the stress off the plane; none where the law does not
+    /// know that, nor along one axis.
     pub fn invariants(&self) -> impl Iterator<Item = Invariants> {
         particle_fields::invariants(&self.particles.stress, &self.law)
     }

@@ -8,8 +8,9 @@ use crate::scene::Scene;
 /// Rows and columns in VTK's order of a symmetric tensor.
 const ORDER: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
 
-/// The particles with the fields that tables have, under the same names; vectors and tensors have their components in space, and the stress
-/// off the plane is part of the stress. Where a law does not know it, it is no number.
+/// The particles with the fields that tables have, under the same names; vectors and tensors have their
+/// components in space, and the stress off the plane is part of the stress. Where a law does not know it, it
+/// is no number.
 pub(super) fn point_cloud<const D: usize>(
     scene: &Scene,
     snapshot: &Snapshot<'_, D>,

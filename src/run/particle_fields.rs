@@ -50,8 +50,8 @@ fn per_extent<const D: usize>(units: [&'static str; 3]) -> &'static str {
 }
 
 impl<const D: usize> Snapshot<'_, D> {
-    /// Hands over every field but the position now, one by one: first those that tables began with, in their order, then the rest.
-    /// `bodies` are the numbers of particles of the bodies.
+    /// Hands over every field but the position now, one by one: first those that tables began with, in their
+    /// order, then the rest. `bodies` are the numbers of particles of the bodies.
     pub(super) fn for_each(&self, scene: &Scene, bodies: &[usize], mut f: impl FnMut(ParticleField)) {
         let (particles, count) = (self.particles, self.particles.len());
         let mut field = |name, unit, rank, values| {
@@ -135,8 +135,8 @@ impl<const D: usize> Snapshot<'_, D> {
         }
     }
 
-    /// Mean and von Mises stress of the particles; none where the stress off the plane is not known, nor along one axis, where the law
-    /// feels a modulus alone.
+    /// Mean and von Mises stress of the particles; none where the stress off the plane is not known, nor
+    /// along one axis, where the law feels a modulus alone.
     pub(super) fn invariants(&self) -> impl Iterator<Item = Invariants> {
         invariants(&self.particles.stress, self.law)
     }

@@ -4,8 +4,8 @@ use super::particle_fields::{ParticleField, Rank, Snapshot, stress_name};
 use crate::output::Table;
 use crate::scene::Scene;
 
-/// Columns of `particles.csv`: positions, then the fields one after the other; in the plane the stress off it is a column of its own, after
-/// those that tables began with.
+/// Columns of `particles.csv`: positions, then the fields one after the other; in the plane the stress off it
+/// is a column of its own, after those that tables began with.
 pub(super) fn particle_table<const D: usize>(
     scene: &Scene,
     snapshot: &Snapshot<'_, D>,

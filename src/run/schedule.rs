@@ -69,8 +69,9 @@ impl Schedule {
         }
     }
 
-    /// Time (s) over which the velocities are kicked in step `step` (from 0): from the middle of the step before to that of this one if
-    /// they start at time zero (`half_kick`), and otherwise the whole step, as the papers have it.
+    /// Time (s) over which the velocities are kicked in step `step` (from 0): from the middle of the step
+    /// before to that of this one if they start at time zero (`half_kick`), and otherwise the whole step, as
+    /// the papers have it.
     pub(super) fn kick(&self, step: usize, half_kick: bool) -> f64 {
         match (half_kick, step.checked_sub(1)) {
             (false, _) => self.size(step),
@@ -80,8 +81,8 @@ impl Schedule {
         }
     }
 
-    /// Time (s) at which the velocities live after `done` steps: the middle of the last one. At the start they are those of time zero,
-    /// or of half a step before where the first kick is a whole step.
+    /// Time (s) at which the velocities live after `done` steps: the middle of the last one. At the start
+    /// they are those of time zero, or of half a step before where the first kick is a whole step.
     pub(super) fn velocity_time(&self, done: usize, half_kick: bool) -> f64 {
         match done.checked_sub(1) {
             Some(last) => self.time_after(done) - self.size(last) / 2.0,

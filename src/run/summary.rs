@@ -111,8 +111,8 @@ pub struct Summary {
     pub steps: usize,
     /// Time reached (s).
     pub time: f64,
-    /// Time (s) at which the velocities live that a run leaves behind: the middle of the last step. Positions and stresses are those of
-    /// `time`.
+    /// Time (s) at which the velocities live that a run leaves behind: the middle of the last step. Positions
+    /// and stresses are those of `time`.
     pub velocity_time: f64,
     /// Size of a step (s).
     pub time_step: f64,
@@ -137,8 +137,8 @@ pub struct Summary {
     /// What the user should know although the run was done.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
-    /// Files that a former run had left in the output folder and that were removed: frames that this run does not go on with, and temporary
-    /// files of killed processes.
+    /// Files that a former run had left in the output folder and that were removed: frames that this run does
+    /// not go on with, and temporary files of killed processes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
 }

@@ -12,7 +12,8 @@ use crate::stepper::SurfacePoint;
 
 /// The surfaces of `body`, whose particles are those of `filling` and are numbered from `first` on: in one phase those that bear a
 /// traction, where its boundary says so; in two every end at which a load, a pressure outside or the solid's skin acts on the liquid, that is, all but
-/// the held and sealed ones. Beyond one dimension each row of the lattice has a point wherever it ends, also at a hole.
+/// the held and sealed ones. Beyond one dimension each row of the lattice has a point wherever it ends, also
+/// at a hole.
 pub(super) fn surfaces<const D: usize>(
     scene: &Scene,
     body: &Body,
@@ -62,7 +63,8 @@ fn is_needed(scene: &Scene, face: Face) -> bool {
     scene.material.phases.count() > 1 || boundary.is_some_and(|b| matches!(b.kind, BoundaryKind::Traction(_)))
 }
 
-/// Whether the end of the body's box meets a wall of the grid that holds the solid and lets no liquid pass; in one phase there is no liquid.
+/// Whether the end of the body's box meets a wall of the grid that holds the solid and lets no liquid pass;
+/// in one phase there is no liquid.
 fn is_sealed_wall(scene: &Scene, body: &Body, face: Face) -> bool {
     let boundary = scene.boundaries.iter().find(|boundary| boundary.face == face);
     let sealed_wall = |boundary: &Boundary| boundary.is_held() && !boundary.is_open();
@@ -82,7 +84,8 @@ pub(super) struct End {
     of_box: bool,
 }
 
-/// Where the rows of the lattice along the face's axis end towards it, ascending: at the last particle, and at every hole before it.
+/// Where the rows of the lattice along the face's axis end towards it, ascending: at the last particle, and
+/// at every hole before it.
 pub(super) fn ends<const D: usize>(filling: &Filling<D>, face: Face) -> Vec<End> {
     let (lattice, upwards) = (&filling.lattice, face.side == Side::Max);
     let mut there = vec![false; lattice.len()];
@@ -114,8 +117,8 @@ pub(super) fn rows<const D: usize>(filling: &Filling<D>, face: Face) -> usize {
 
 /// Whether another body begins where this one ends, next to the particle.
 ///
-/// A box ends half a particle beyond the last one, and round-off is forgiven; where shapes say where bodies are, their ends are known to a
-/// particle.
+/// A box ends half a particle beyond the last one, and round-off is forgiven; where shapes say where bodies
+/// are, their ends are known to a particle.
 fn touches_another<const D: usize>(
     scene: &Scene,
     body: &Body,
@@ -227,7 +230,8 @@ mod tests {
         assert_eq!(ends(&[ONE_PHASE, loaded]), [("x-max".to_owned(), 7)]);
     }
 
-    /// A square ring of 8 x 8 particles with a hole of 4 x 4: eight rows end at its right side, and four at the hole before it.
+    /// A square ring of 8 x 8 particles with a hole of 4 x 4: eight rows end at its right side, and four at
+    /// the hole before it.
     #[test]
     fn a_hole_has_surfaces_too() {
         let plane = "grid={min=[0,0], max=[2,2], cells=[4,4]}";
@@ -249,7 +253,8 @@ mod tests {
         };
         assert_eq!((points.surface.len(), at(1.875), at(0.375)), (12, 8, 4));
         // A plug in the hole leaves none there.
-        let plug = "body=[{min=[0,0], max=[2,2], particles_per_cell=[2,2], inside='max(abs(x-1), abs(y-1)) - 0.5'}, \
+        let plug = "body=[{min=[0,0], max=[2,2], particles_per_cell=[2,2], inside='max(abs(x-1), abs(y-1)) - \
+        0.5'}, \
                     {min=[0.5,0.5], max=[1.5,1.5], particles_per_cell=[2,2]}]";
         let set = [plane, ONE_PHASE, law, plug, loaded].map(String::from);
         let scene = Scene::from_toml(SCENE, &set).unwrap();

@@ -1,7 +1,7 @@
 //! What a scene asks for that is surely not meant, or cannot be had: said before the run, with key and value.
 //!
-//! Each check compares quantities of one unit, so that none depends on the size of the problem, and speaks only where no sensible scene would
-//! be: a warning that is wrong now and then is soon read no more.
+//! Each check compares quantities of one unit, so that none depends on the size of the problem, and speaks
+//! only where no sensible scene would be: a warning that is wrong now and then is soon read no more.
 
 mod ends;
 mod numbers;

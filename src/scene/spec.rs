@@ -36,8 +36,9 @@ pub struct TimeSpec {
     pub step: StepSize,
     /// End of the run (s), positive.
     pub end: f64,
-    /// Whether the first kick is half a step, so that velocities given at the start are those of time zero and the run is of second
-    /// order in time; otherwise they count as those of half a step before, as in the papers.
+    /// Whether the first kick is half a step, so that velocities given at the start are those of time zero
+    /// and the run is of second order in time; otherwise they count as those of half a step before, as in the
+    /// papers.
     pub half_kick: bool,
 }
 
@@ -304,7 +305,8 @@ pub struct Body {
     pub seed: u64,
 }
 
-/// Part of a length of the particles up to which two ends are one: round-off of coordinates that people compute.
+/// Part of a length of the particles up to which two ends are one: round-off of coordinates that people
+/// compute.
 pub(crate) const FORGIVEN: f64 = 1e-8;
 
 impl Body {

@@ -7,8 +7,8 @@ use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 
-/// What the law knows of each particle besides its stress, in the order in which the particles were given; an array is empty where the law
-/// does not know it.
+/// What the law knows of each particle besides its stress, in the order in which the particles were given; an
+/// array is empty where the law does not know it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MaterialFields {
     /// Stress (Pa) along the axes that the grid does not have; see [`ConstitutiveLaw::off_plane_stress`].

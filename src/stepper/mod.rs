@@ -12,8 +12,9 @@
 //!    volume by $\det(1+\Delta\varepsilon)$ at large strain.
 //!
 //! Basis values of all stages are taken at the positions at the start of the step. Velocity lives half a step
-//! early: started from $v(0)$, after $n$ steps it approximates $v(n\Delta t - \Delta t/2)$, to first order because the first kick is a
-//! whole step, or to second order if that is half a step ([`Stepper::step_with_kick`]).
+//! early: started from $v(0)$, after $n$ steps it approximates $v(n\Delta t - \Delta t/2)$, to first order
+//! because the first kick is a whole step, or to second order if that is half a step
+//! ([`Stepper::step_with_kick`]).
 
 mod acceleration;
 mod advance;
@@ -293,12 +294,13 @@ where
         self.step_with_kick(dt, dt, forcing)
     }
 
-    /// The same with velocities that gain `kick` (s) times their accelerations, while positions and strains go on by `dt` (s).
+    /// The same with velocities that gain `kick` (s) times their accelerations, while positions and strains
+    /// go on by `dt` (s).
     ///
-    /// Velocities live in the middle of steps: the kick from the middle of the step before, of size `before`, to that of this one is
-    /// `(before + dt) / 2`, of second order also where steps change, and `dt / 2` in the first step of a run, whose velocities are those of
-    /// time zero. [`Stepper::step`] takes `dt` always, as the papers do: then the velocities given at the start count as those of half a
-    /// step before.
+    /// Velocities live in the middle of steps: the kick from the middle of the step before, of size `before`,
+    /// to that of this one is `(before + dt) / 2`, of second order also where steps change, and `dt / 2` in
+    /// the first step of a run, whose velocities are those of time zero. [`Stepper::step`] takes `dt` always,
+    /// as the papers do: then the velocities given at the start count as those of half a step before.
     ///
     /// # Errors
     /// Those of [`Stepper::step`]; the kick too must be positive and finite.

@@ -10,10 +10,12 @@ use crate::run::{Invariants, Outcome};
 use crate::scene::Scene;
 
 /// Writes `fields.svg`: particles where they are at the end, coloured by the sizes of displacement and velocity, by the mean stress
-/// and by von Mises' stress, both with the stress off the plane; with two phases by the pore pressure instead of the velocity, and the
-/// stress is the effective one. Stresses are left out where the law does not know the one off the plane.
+/// and by von Mises' stress, both with the stress off the plane; with two phases by the pore pressure instead
+/// of the velocity, and the stress is the effective one. Stresses are left out where the law does not know
+/// the one off the plane.
 ///
-/// Particles in space are seen along `y` from its lower end: `x` to the right, `z` up, and what lies behind others is hidden.
+/// Particles in space are seen along `y` from its lower end: `x` to the right, `z` up, and what lies behind
+/// others is hidden.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -79,8 +81,8 @@ fn panel<const D: usize>(
     }
 }
 
-/// Particles that are not hidden: in space the first one along `y` of each square of half a particle's width. Dots of one colour are drawn
-/// together, so that without this the colour would decide what lies in front.
+/// Particles that are not hidden: in space the first one along `y` of each square of half a particle's width.
+/// Dots of one colour are drawn together, so that without this the colour would decide what lies in front.
 fn seen<const D: usize>(run: &Outcome<D>) -> Vec<usize> {
     let particles = &run.particles;
     if D < 3 {

@@ -1,7 +1,8 @@
 //! Stress off the plane of every law.
 //!
-//! Plane strain is space in which nothing moves along the third axis: the same law in three dimensions, driven by the same increments,
-//! has as its third normal stress what the law in the plane must tell. Along one axis both lateral stresses.
+//! Plane strain is space in which nothing moves along the third axis: the same law in three dimensions,
+//! driven by the same increments, has as its third normal stress what the law in the plane must tell. Along
+//! one axis both lateral stresses.
 
 use super::{Specimen, moduli, random};
 use materialpoint::law::{
@@ -15,7 +16,8 @@ fn in_space<const D: usize>(tensor: &SMatrix<f64, D, D>) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| tensor.get((row, column)).copied().unwrap_or(0.0))
 }
 
-/// Drives a law in `D` dimensions and in space over the same path; the states must tell the same third stress and plastic strain.
+/// Drives a law in `D` dimensions and in space over the same path; the states must tell the same third stress
+/// and plastic strain.
 fn compare<const D: usize, L>(name: &str, law: &L, size: f64, start: Option<SMatrix<f64, D, D>>)
 where
     L: ConstitutiveLaw<f64, D> + ConstitutiveLaw<f64, 3>,
@@ -95,7 +97,8 @@ fn so_does_material_that_started_under_stress() {
     );
 }
 
-/// `2 mu dev(d)` has no trace: a fluid that is only sheared or squeezed at constant volume feels no viscous stress off the plane.
+/// `2 mu dev(d)` has no trace: a fluid that is only sheared or squeezed at constant volume feels no viscous
+/// stress off the plane.
 #[test]
 fn a_viscous_fluid_too() {
     let fluid = NewtonianFluid::new(1e6, 7.0, 30.0).unwrap();

@@ -195,8 +195,9 @@ fn particles_take_their_states_from_their_stresses() {
     assert!(allowed.contains("beyond its strength"), "{allowed}");
 }
 
-/// Without dilation `eta = sin(phi)`, and elastic stress off the plane is nu (xx + yy): the cone `J2 = eta^2 p^2` is reached at
-/// `(1 - K) / (1 + K) = r`, `r^2 = 4 (eta^2 (1 + nu)^2 / 9 - (1 - 2 nu)^2 / 12)`, K = 0.463 for 30 degrees, and at 1 / K.
+/// Without dilation `eta = sin(phi)`, and elastic stress off the plane is nu (xx + yy): the cone `J2 = eta^2
+/// p^2` is reached at `(1 - K) / (1 + K) = r`, `r^2 = 4 (eta^2 (1 + nu)^2 / 9 - (1 - 2 nu)^2 / 12)`, K =
+/// 0.463 for 30 degrees, and at 1 / K.
 #[test]
 fn what_is_borne_is_told_by_its_range() {
     let strength = Strength {
@@ -214,7 +215,8 @@ fn what_is_borne_is_told_by_its_range() {
     let numbers: Vec<f64> = allowed.split(' ').filter_map(|word| word.parse().ok()).collect();
     let r = 2.0 * (0.25 * 1.3_f64.powi(2) / 9.0 - 0.4_f64.powi(2) / 12.0).sqrt();
     let k = (1.0 - r) / (1.0 + r);
-    // xx beside yy, then yy beside xx. Cauchy's stress differs from Kirchhoff's by the volume strain, under a per cent.
+    // xx beside yy, then yy beside xx. Cauchy's stress differs from Kirchhoff's by the volume strain, under a
+    // per cent.
     let right = [-1e5 / k, -1e5 * k, -2e4 / k, -2e4 * k];
     assert_eq!(numbers.len(), right.len(), "{allowed}");
     for (found, right) in numbers.iter().zip(right) {

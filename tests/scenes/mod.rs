@@ -1,3 +1,4 @@
 //! Scenes as people write them.
 
 mod malformed;
+mod warnings;

@@ -26,7 +26,8 @@ pub struct MapPanel {
     pub name: String,
     /// Unit of the values, such as `Pa`; empty for none.
     pub unit: String,
-    /// Names of the axes to the right and upwards; `x` and `y` where they are empty. All maps of a page have those of the first.
+    /// Names of the axes to the right and upwards; `x` and `y` where they are empty. All maps of a page have
+    /// those of the first.
     pub axes: [&'static str; 2],
     /// The grid's corner with the lowest coordinates and its opposite (m).
     pub bounds: [[f64; 2]; 2],

@@ -38,12 +38,14 @@ fn of_traction<const D: usize>(
     }
     let problem = match &boundary.inside {
         Some(inside) if loaded == 0 => Some(format!(
-            "{} is positive at none of the {all} particles of the surfaces that look towards {face}: the traction acts nowhere",
+            "{} is positive at none of the {all} particles of the surfaces that look towards {face}: the \
+             traction acts nowhere",
             inside.origin()
         )),
         None if holes > 0 => Some(format!(
-            "boundary.{index}.traction acts on every surface that looks towards {face}, also on {holes} particles at holes and notches \
-             before the last ones of their rows; say by boundary.{index}.inside where it is to act if that is not meant"
+            "boundary.{index}.traction acts on every surface that looks towards {face}, also on {holes} \
+             particles at holes and notches before the last ones of their rows; say by \
+             boundary.{index}.inside where it is to act if that is not meant"
         )),
         _ => None,
     };

@@ -7,13 +7,15 @@ use super::super::schedule::Schedule;
 use super::range;
 use crate::scene::{BoundaryKind, Expression, Law, ParticleOutput, Phases, Scene, SpaceLaw};
 
-/// A coefficient of friction that is rather an angle in degrees: the wall would hold on a slope of 79 degrees, which no dry pair of materials
-/// does (rubber on rock reaches 2 or 3), while walls of soil or steel have angles of 5 to 45 degrees.
+/// A coefficient of friction that is rather an angle in degrees: the wall would hold on a slope of 79
+/// degrees, which no dry pair of materials does (rubber on rock reaches 2 or 3), while walls of soil or steel
+/// have angles of 5 to 45 degrees.
 const MOST_FRICTION: f64 = 5.0;
-/// An angle of friction (degrees) that is rather one in radians: no frictional material has less than a degree and a half, and none more than
-/// so many radians.
+/// An angle of friction (degrees) that is rather one in radians: no frictional material has less than a
+/// degree and a half, and none more than so many radians.
 const LEAST_ANGLE: f64 = std::f64::consts::FRAC_PI_2;
-/// Part of the particles' spacing over which a pressure must be able to even out within the run where something is drained.
+/// Part of the particles' spacing over which a pressure must be able to even out within the run where
+/// something is drained.
 const LEAST_DRAINED: f64 = 1e-2;
 
 pub(super) fn warnings<const D: usize>(
@@ -38,11 +40,15 @@ fn friction(scene: &Scene) -> Vec<String> {
     too_much
         .map(|(index, coefficient)| {
             let angle = match coefficient < 90.0 {
-                true => format!("if it is an angle in degrees write its tangent, {:.4}; ", coefficient.to_radians().tan()),
+                true => format!(
+                    "if it is an angle in degrees write its tangent, {:.4}; ",
+                    coefficient.to_radians().tan()
+                ),
                 false => String::new(),
             };
             format!(
-                "boundary.{index}.friction = {coefficient:?} is a coefficient, and nothing dry rubs by {MOST_FRICTION} or more; {angle}for a \
+                "boundary.{index}.friction = {coefficient:?} is a coefficient, and nothing dry rubs by \
+                 {MOST_FRICTION} or more; {angle}for a \
                  wall that holds all write fixed = true"
             )
         })
@@ -55,7 +61,8 @@ fn friction_angle(scene: &Scene) -> Option<String> {
     };
     (friction_angle > 0.0 && friction_angle < LEAST_ANGLE).then(|| {
         format!(
-            "material.law.drucker-prager.friction_angle = {friction_angle:?} is in degrees, and no frictional material has so little; in \
+            "material.law.drucker-prager.friction_angle = {friction_angle:?} is in degrees, and no \
+             frictional material has so little; in \
              radians it would be {:.1} degrees",
             friction_angle.to_degrees()
         )
@@ -71,7 +78,8 @@ fn stiffness(law: Law) -> (String, f64) {
     (format!("material.law.{}.{key}", law.name()), law.youngs_modulus())
 }
 
-/// Loads that the material cannot bear but by strains of its own size: its weight along an axis, or a traction.
+/// Loads that the material cannot bear but by strains of its own size: its weight along an axis, or a
+/// traction.
 fn load_over_stiffness(scene: &Scene) -> Result<Vec<String>, RunError> {
     let (key, stiffness) = stiffness(scene.material.law);
     let density = match scene.material.phases {
@@ -88,7 +96,8 @@ fn load_over_stiffness(scene: &Scene) -> Result<Vec<String>, RunError> {
         let weight = density * most(force)? * extents.fold(0.0, f64::max);
         if weight >= stiffness {
             found.push(format!(
-                "{key} = {stiffness:?} Pa is less than what the bodies' own weight presses them with, {weight:.3e} Pa ({}); strains are \
+                "{key} = {stiffness:?} Pa is less than what the bodies' own weight presses them with, \
+                 {weight:.3e} Pa ({}); strains are \
                  of order 1 or more, so look at the units",
                 force.origin()
             ));
@@ -102,7 +111,8 @@ fn load_over_stiffness(scene: &Scene) -> Result<Vec<String>, RunError> {
             let load = most(component)?;
             if load >= stiffness {
                 found.push(format!(
-                    "{key} = {stiffness:?} Pa is less than the load {}, {load:.3e} Pa at most; strains are of order 1 or more, so look \
+                    "{key} = {stiffness:?} Pa is less than the load {}, {load:.3e} Pa at most; strains are \
+                     of order 1 or more, so look \
                      at the units",
                     component.origin()
                 ));
@@ -112,7 +122,8 @@ fn load_over_stiffness(scene: &Scene) -> Result<Vec<String>, RunError> {
     Ok(found)
 }
 
-/// A drained surface that drains nothing: within the run a pressure evens out over `sqrt(c_v t)`, `c_v = k E / (rho_w g)`.
+/// A drained surface that drains nothing: within the run a pressure evens out over `sqrt(c_v t)`, `c_v = k E
+/// / (rho_w g)`.
 fn permeability<const D: usize>(scene: &Scene) -> Result<Option<String>, RunError> {
     let Phases::Two(soil) = scene.material.phases else {
         return Ok(None);
@@ -131,8 +142,10 @@ fn permeability<const D: usize>(scene: &Scene) -> Result<Option<String>, RunErro
     }
     Ok((depth < LEAST_DRAINED * least).then(|| {
         format!(
-            "material.permeability = {:?}: until time.end = {:?} s pressures even out over {depth:.1e} m, of a particle's {least:.1e} m, so \
-             that nothing drains; it is the hydraulic conductivity in m/s: an intrinsic permeability in m2 is to be multiplied by the \
+            "material.permeability = {:?}: until time.end = {:?} s pressures even out over {depth:.1e} m, of \
+             a particle's {least:.1e} m, so \
+             that nothing drains; it is the hydraulic conductivity in m/s: an intrinsic permeability in m2 \
+             is to be multiplied by the \
              liquid's unit weight over its viscosity, 1e7 /(m s) for water",
             soil.permeability, scene.time.end
         )
@@ -148,7 +161,8 @@ fn single_particles<const D: usize>(scene: &Scene) -> Result<Vec<String>, RunErr
         if kept.len() == 1 {
             let cell: Vec<f64> = grid.cell_size().iter().copied().collect();
             found.push(format!(
-                "body.{index} is a single particle, which cannot deform: its box is {:.3?} to {:.3?} m in cells of {cell:.3?} m; look at \
+                "body.{index} is a single particle, which cannot deform: its box is {:.3?} to {:.3?} m in \
+                 cells of {cell:.3?} m; look at \
                  the units, grid.cells and body.{index}.particles_per_cell",
                 body.min, body.max
             ));

@@ -13,8 +13,8 @@ use crate::scene::{Law, Scene};
 /// Principal strain beyond which small strain is no longer small: stresses and volumes are wrong by as much.
 const MOST_STRAIN: f64 = 0.05;
 
-/// A warning if the particles of a run in small strain were strained by much at its end. The strain is the one that Hooke's law has for what the
-/// stress has changed by.
+/// A warning if the particles of a run in small strain were strained by much at its end. The strain is the
+/// one that Hooke's law has for what the stress has changed by.
 pub(crate) fn small_strain<const D: usize>(
     scene: &Scene,
     particles: &Particles<f64, D>,
@@ -49,7 +49,8 @@ where
         );
     Ok((strain > MOST_STRAIN).then(|| {
         format!(
-            "material.strain = \"small\", and the strain grew to {strain:.3} (particle {particle} at the end): stresses and volumes are wrong \
+            "material.strain = \"small\", and the strain grew to {strain:.3} (particle {particle}): stresses \
+             and volumes are wrong \
              by as much; take strain = \"large\", or look at the loads and the stiffness"
         )
     }))

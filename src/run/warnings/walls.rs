@@ -19,7 +19,8 @@ where
         for (index, body) in scene.bodies.iter().enumerate() {
             if let Some(load) = load_into(scene, body, &grid, face)? {
                 found.push(format!(
-                    "body.{index} touches {face}, nothing holds it there, and {load} leads it out of the grid; expected a [[boundary]] \
+                    "body.{index} touches {face}, nothing holds it there, and {load} leads it out of the \
+                     grid; expected a [[boundary]] \
                      with face = \"{face}\" and fixed, roller or friction, or a grid with room there"
                 ));
             }
@@ -36,8 +37,8 @@ fn outwards(face: Face) -> f64 {
     }
 }
 
-/// A face that is told a velocity holds the grid's end, which stays where it is: material that it would have pushed further than a cell is
-/// beyond its reach, and material that it pulls out leaves the grid.
+/// A face that is told a velocity holds the grid's end, which stays where it is: material that it would have
+/// pushed further than a cell is beyond its reach, and material that it pulls out leaves the grid.
 fn travels<const D: usize>(
     scene: &Scene,
     grid: &Grid<f64, D>,
@@ -59,7 +60,8 @@ fn travels<const D: usize>(
     let touched = scene.bodies.iter().any(|body| touches(scene, body, face));
     let problem = if inwards > cell {
         format!(
-            "it would come in by {inwards:.3e} m, and material further than a cell, {cell:.3e} m, is beyond its reach"
+            "it would come in by {inwards:.3e} m, and material further than a cell, {cell:.3e} m, is beyond its \
+             reach"
         )
     } else if touched && out > cell / 2.0 {
         format!("it would go out by {out:.3e} m, and what follows it leaves the grid")
@@ -67,7 +69,8 @@ fn travels<const D: usize>(
         return Ok(None);
     };
     Ok(Some(format!(
-        "{}: the velocity holds at the grid's face, which stays where it is; {problem}. Walls that travel are not there yet; move the body \
+        "{}: the velocity holds at the grid's face, which stays where it is; {problem}. Walls that travel \
+         are not there yet; move the body \
          instead, or load it by a traction",
         normal.origin()
     )))

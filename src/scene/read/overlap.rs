@@ -2,8 +2,8 @@
 
 use crate::scene::{Body, ExpressionError, FORGIVEN, GridSpec};
 
-/// By how much two bodies overlap, in words; `None` if they at most touch. Boxes count as far as nothing says where within them the bodies
-/// are; otherwise the particles of one that lie in the shape of the other.
+/// By how much two bodies overlap, in words; `None` if they at most touch. Boxes count as far as nothing says
+/// where within them the bodies are; otherwise the particles of one that lie in the shape of the other.
 pub(super) fn overlap(a: &Body, b: &Body, grid: &GridSpec) -> Result<Option<String>, ExpressionError> {
     let axes = 0..grid.cells.len();
     let common: Vec<[f64; 2]> = axes
