@@ -199,7 +199,8 @@ macro_rules! beyond_one_axis {
                 match self.driver()? {
                     None => Ok(Box::new(move |x| by_expressions(body, x))),
                     Some(reference) => {
-                        // The first kick leads from where the velocity lives at the start to half a step after it.
+                        // The first kick leads from where the velocity lives at the start to half a step
+                        // after it.
                         let before = if self.time.half_kick { 0.0 } else { dt / 2.0 };
                         Ok(Box::new(move |x| {
                             Ok(started(reference.as_ref(), x, before))
