@@ -40,10 +40,13 @@ pub(super) fn bearable<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
         };
         return format!("the law bears {}{beside}", ranges.join(", or "));
     }
-    let hardly = stress * T::lit(1e-6);
-    match law.start(&hardly, off_plane) {
-        Some(_) => "that is beyond its strength, whichever one of the normal stresses is changed".to_owned(),
-        None => "it starts free of stress, or under a stress of another kind".to_owned(),
+    let starts = |factor: f64| law.start(&(stress * T::lit(factor)), off_plane).is_some();
+    if starts(1e-6) {
+        "that is beyond its strength, whichever one of the normal stresses is changed".to_owned()
+    } else if starts(-1e-6) {
+        "the law bears no such tension; of a compression the normal stresses are negative".to_owned()
+    } else {
+        "the law starts free of stress, or under a stress of another kind".to_owned()
     }
 }
 

@@ -192,7 +192,7 @@ fn particles_take_their_states_from_their_stresses() {
         panic!("{refused:?}");
     };
     assert_eq!(position, points[3].0.as_slice());
-    assert!(allowed.contains("beyond its strength"), "{allowed}");
+    assert!(allowed.contains("no such tension"), "{allowed}");
 }
 
 /// Without dilation `eta = sin(phi)`, and elastic stress off the plane is nu (xx + yy): the cone `J2 = eta^2

@@ -97,7 +97,8 @@ fn place(lines: &[&str], line: usize) -> Place {
     }
     names.reverse();
     Place {
-        key: names.join("."),
+        // Scenes have the constants of the phases beside their number.
+        key: names.join(".").replace("material.phases.", "material."),
         value: value.to_owned(),
     }
 }
@@ -163,7 +164,7 @@ mod tests {
             ("time.half_kick=true", "time.half_kick", "false", "true"),
             ("method.basis=dual-domain", "method.basis", "Linear", "DualDomain"),
             ("method.scalar=f32", "method.scalar", "F64", "F32"),
-            ("material.density=2", "material.phases.density", "1.0", "2.0"),
+            ("material.density=2", "material.density", "1.0", "2.0"),
             ("body.0.jitter=0.5", "body.jitter", "0.0", "0.5"),
             ("boundary=[{face='x-min', fixed=true}]", "boundary", "[]", ""),
         ];

@@ -17,6 +17,8 @@ const LEAST_ANGLE: f64 = std::f64::consts::FRAC_PI_2;
 /// Part of the particles' spacing over which a pressure must be able to even out within the run where
 /// something is drained.
 const LEAST_DRAINED: f64 = 1e-2;
+/// Times that a wave crosses the bodies in a run that is about more than waves.
+const LEAST_CROSSINGS: f64 = 10.0;
 
 pub(super) fn warnings<const D: usize>(
     scene: &Scene,
@@ -123,7 +125,7 @@ fn load_over_stiffness(scene: &Scene) -> Result<Vec<String>, RunError> {
 }
 
 /// A drained surface that drains nothing: within the run a pressure evens out over `sqrt(c_v t)`, `c_v = k E
-/// / (rho_w g)`.
+/// / (rho_w g)`. A run in which waves have hardly crossed the bodies is about waves.
 fn permeability<const D: usize>(scene: &Scene) -> Result<Option<String>, RunError> {
     let Phases::Two(soil) = scene.material.phases else {
         return Ok(None);
@@ -131,23 +133,27 @@ fn permeability<const D: usize>(scene: &Scene) -> Result<Option<String>, RunErro
     if !scene.boundaries.iter().any(crate::scene::Boundary::is_open) {
         return Ok(None);
     }
+    let end = scene.time.end;
+    let stiffness = scene.material.law.youngs_modulus();
     let unit_weight = soil.liquid_density * soil.gravity;
-    let diffusivity = soil.permeability * scene.material.law.youngs_modulus() / unit_weight;
-    let depth = (diffusivity * scene.time.end).sqrt();
+    let depth = (soil.permeability * stiffness / unit_weight * end).sqrt();
+    let modulus = stiffness + soil.liquid_bulk_modulus / soil.porosity;
+    let waves = (modulus / soil.saturated_density()).sqrt() * end;
     let grid = grid::<f64, D>(scene)?;
-    let mut least = f64::INFINITY;
+    let (mut least, mut size) = (f64::INFINITY, 0.0_f64);
     for body in &scene.bodies {
         let (lattice, _) = keep(body, &grid)?;
         least = lattice.spacing().iter().fold(least, |least, &s| least.min(s));
+        let extents = body.min.iter().zip(&body.max).map(|(low, high)| high - low);
+        size = extents.fold(size, f64::max);
     }
-    Ok((depth < LEAST_DRAINED * least).then(|| {
+    Ok((depth < LEAST_DRAINED * least && waves > LEAST_CROSSINGS * size).then(|| {
         format!(
-            "material.permeability = {:?}: until time.end = {:?} s pressures even out over {depth:.1e} m, of \
-             a particle's {least:.1e} m, so \
-             that nothing drains; it is the hydraulic conductivity in m/s: an intrinsic permeability in m2 \
-             is to be multiplied by the \
-             liquid's unit weight over its viscosity, 1e7 /(m s) for water",
-            soil.permeability, scene.time.end
+            "material.permeability = {:?}: until time.end = {end:?} s pressures even out over {depth:.1e} m, \
+             of a particle's {least:.1e} m, so that nothing drains; it is the hydraulic conductivity in m/s: \
+             an intrinsic permeability in m2 is to be multiplied by the liquid's unit weight over its \
+             viscosity, 1e7 /(m s) for water",
+            soil.permeability
         )
     }))
 }
