@@ -77,6 +77,21 @@ pub enum SetupError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// A stress at the start that the law cannot bear.
+    #[error(
+        "particle {particle} at {position:?} m starts under {}; {allowed}",
+        named(stress)
+    )]
+    InitialStress {
+        /// Index of the particle.
+        particle: usize,
+        /// Its position (m).
+        position: Vec<f64>,
+        /// Components of the stress (Pa) by name.
+        stress: Vec<(String, f64)>,
+        /// What the law bears instead.
+        allowed: String,
+    },
     /// Material constants that make no sense.
     #[error("{name} = {value}; {allowed}")]
     Constant {
@@ -87,6 +102,14 @@ pub enum SetupError {
         /// What is allowed.
         allowed: &'static str,
     },
+}
+
+/// Components of a stress in words.
+pub(crate) fn named(stress: &[(String, f64)]) -> String {
+    let each = stress
+        .iter()
+        .map(|(name, value)| format!("{name} = {value:.4e} Pa"));
+    each.collect::<Vec<_>>().join(", ")
 }
 
 /// A step that could not be completed; the particles hold the state in which it was noticed.

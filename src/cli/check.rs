@@ -1,6 +1,6 @@
 //! `materialpoint check`.
 
-use materialpoint::run::{MethodSummary, critical_step, mechanism, simulation, simulation_in};
+use materialpoint::run::{MethodSummary, critical_step, mechanism, simulation, simulation_in, warnings};
 use materialpoint::scene::StepSize;
 use materialpoint::stepper::{Mechanism, Simulation};
 use serde_json::json;
@@ -8,7 +8,7 @@ use serde_json::json;
 use super::Shared;
 use super::failure::Failure;
 use super::print::{print, print_json};
-use super::run::load;
+use super::run::{load, warn};
 
 /// What a particle carries.
 const ONE_PHASE: [&str; 7] = [
@@ -60,6 +60,8 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
         2 => Built::of(simulation_in::<2>(&scene)?.as_ref()),
         _ => Built::of(simulation_in::<3>(&scene)?.as_ref()),
     };
+    let warnings = warnings(&scene)?;
+    warn(&warnings);
     let critical = limit.map(|limit| limit.step);
     let method = MethodSummary::of(&scene);
     let mechanism = mechanism(&scene, limit.map_or(Mechanism::Wave, |limit| limit.mechanism));
@@ -87,6 +89,7 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
             "critical_time_step": critical,
             "mechanism": mechanism,
             "stable": stable,
+            "warnings": warnings,
         }));
     }
     let mut lines = vec![format!("{}: the scene is valid", scene.title)];

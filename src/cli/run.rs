@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use materialpoint::output::Folder;
-use materialpoint::run::{InSpace, Outcome, Progress, RunError, Summary, resume_in, run_in};
+use materialpoint::run::{InSpace, Outcome, Progress, RunError, Summary, resume_in, run_in, warnings};
 use materialpoint::scene::{Scene, SceneError};
 use materialpoint::study::{write_fields, write_maps};
 
@@ -40,6 +40,10 @@ pub(super) fn run_scene(name: &str, resume: Option<&Path>, shared: &Shared) -> R
         _ => in_space::<3>(&begin, &mut progress),
     };
     progress_bar.finish_and_clear();
+    if let Err(Failure::Stopped(_)) = done {
+        // What was said of the scene is not lost with the summary: it may be why.
+        warn(&warnings(&scene)?);
+    }
     let (summary, files) = done?;
     warn(&summary.warnings);
     if shared.json {
@@ -103,6 +107,7 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         dofs,
         steps,
         time,
+        velocity_time,
         time_step,
         wall_seconds,
         particle_steps_per_second,
@@ -114,6 +119,7 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         conservation,
         energy,
         warnings: _,
+        removed,
     } = summary;
     let mut lines = vec![title.clone()];
     lines.push(format!(
@@ -134,7 +140,8 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         "  model         {particles} particles, {cells} cells, {dofs} DOFs"
     ));
     lines.push(format!(
-        "  time          {steps} steps of {time_step:.3e} s to {time:.6} s"
+        "  time          {steps} steps of {time_step:.3e} s to {time:.6} s; velocities are those of \
+         {velocity_time:.6} s"
     ));
     lines.push(format!(
         "  speed         {wall_seconds:.3} s, {:.2} million particle steps per second, {bytes_per_particle:.0} bytes per particle",
@@ -187,6 +194,12 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         lines.push(format!(
             "  walls         did {work:.6e} {unit} of work on the bodies, at most {gain:.1e} {unit} against friction in a step"
         ));
+    }
+    if let (Some(first), Some(last)) = (removed.first(), removed.last()) {
+        lines.push(match removed.len() {
+            1 => format!("  removed       {first} of a former run"),
+            n => format!("  removed       {n} files of a former run, {first} to {last}"),
+        });
     }
     for file in files {
         lines.push(format!("  wrote         {}", file.display()));

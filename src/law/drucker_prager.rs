@@ -172,6 +172,14 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for DruckerPrager<T> {
         (wave_modulus(&self.moduli, stress, state.volume) / density).sqrt()
     }
 
+    fn off_plane_stress(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> Option<T> {
+        (D < 3).then(|| Self::off_plane_stress(self, state))
+    }
+
+    fn plastic_strain(&self, state: &Self::State) -> Option<T> {
+        Some(state.plastic_strain)
+    }
+
     fn energy_density(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         stored_energy(&self.moduli, &state.stretch.principal().strain) / state.volume
     }

@@ -66,6 +66,10 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hencky<T> {
         (wave_modulus(&self.moduli, stress, j) / density).sqrt()
     }
 
+    fn off_plane_stress(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> Option<T> {
+        (D < 3).then(|| Self::off_plane_stress(self, state))
+    }
+
     fn energy_density(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         let principal = state.principal();
         stored_energy(&self.moduli, &principal.strain) / principal.volume()

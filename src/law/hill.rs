@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 
-use super::linear_elastic::{complementary_energy, hooke};
+use super::linear_elastic::{complementary_energy, hooke, unstrained_stress};
 use super::{ConstitutiveLaw, Moduli};
 use crate::scalar::Scalar;
 use crate::tensor::symmetric;
@@ -58,6 +58,13 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hill<T> {
         let lowest = (1..D).fold(stress[(0, 0)], |lowest, a| lowest.min(stress[(a, a)]));
         let modulus = self.moduli.p_wave() - lowest;
         (modulus.max(T::zero()) / density).sqrt()
+    }
+
+    /// That of small strain is exact here too, step by step: spin has no part in the trace, so `tr(sigma)`
+    /// gains `(2 (lambda + mu) - tr(sigma)) tr(d)` in the plane and the stress off it `(lambda - sigma_zz)
+    /// tr(d)`, which keeps their ratio.
+    fn off_plane_stress(&self, stress: &SMatrix<T, D, D>, _state: &()) -> Option<T> {
+        unstrained_stress(&self.moduli, stress)
     }
 
     /// Exact in 1-D: `E (J - 1 - ln J)` per reference volume with `J = 1/(1 - sigma/E)`. Beyond 1-D the rate has

@@ -30,7 +30,7 @@ pub(super) fn hooke<T: Scalar, const D: usize>(moduli: &Moduli<T>, e: &SMatrix<T
 
 /// The strain without parts off the plane that [`hooke`] gives this stress.
 #[inline]
-fn hooke_strain<T: Scalar, const D: usize>(
+pub(crate) fn hooke_strain<T: Scalar, const D: usize>(
     moduli: &Moduli<T>,
     stress: &SMatrix<T, D, D>,
 ) -> SMatrix<T, D, D> {
@@ -54,6 +54,17 @@ pub(super) fn hooke_strain_at<T: Scalar, const D: usize>(
     modulus: T,
 ) -> SMatrix<T, D, D> {
     hooke_strain(moduli, stress) * (moduli.p_wave() / modulus)
+}
+
+/// Stress (Pa) along the axes that the grid does not have and along which nothing is strained: in the plane
+/// `nu (sigma_xx + sigma_yy)`.
+#[inline]
+pub(super) fn unstrained_stress<T: Scalar, const D: usize>(
+    moduli: &Moduli<T>,
+    stress: &SMatrix<T, D, D>,
+) -> Option<T> {
+    let share = moduli.lambda / (T::count(D) * moduli.lambda + moduli.mu + moduli.mu);
+    (D < 3).then(|| share * stress.trace())
 }
 
 /// `sigma : C^-1 : sigma / 2` for plane or uniaxial strain, where the strains off the plane are zero.
@@ -87,6 +98,11 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for LinearElastic<T> {
     #[inline(always)]
     fn wave_speed(&self, density: T, _stress: &SMatrix<T, D, D>, _state: &()) -> T {
         (self.moduli.p_wave() / density).sqrt()
+    }
+
+    /// An initial stress counts as strained in the grid's axes alone, as [`ConstitutiveLaw::start`] has it.
+    fn off_plane_stress(&self, stress: &SMatrix<T, D, D>, _state: &()) -> Option<T> {
+        unstrained_stress(&self.moduli, stress)
     }
 
     fn energy_density(&self, stress: &SMatrix<T, D, D>, _state: &()) -> T {

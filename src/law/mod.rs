@@ -21,6 +21,8 @@ pub use elastic_stretch::ElasticStretch;
 pub use hencky::Hencky;
 pub use hill::Hill;
 pub use linear_elastic::LinearElastic;
+#[cfg(feature = "scene")]
+pub(crate) use linear_elastic::hooke_strain;
 pub use logarithmic::Logarithmic;
 pub use moduli::Moduli;
 pub use neo_hookean::{DeformationGradient, NeoHookean};
@@ -123,6 +125,23 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Sync {
 
     /// Speed (m/s) of the fastest wave in material of the given current `density` (kg/m3).
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T;
+
+    /// Cauchy stress (Pa) along the axes that the grid does not have, alike if there are two of them; `None`
+    /// where there is no such axis, or where the law does not know it.
+    ///
+    /// It is no part of the motion, so nothing in a step asks for it; files and pictures do, because mean and
+    /// von Mises stress are those of all three axes.
+    #[inline]
+    fn off_plane_stress(&self, _stress: &SMatrix<T, D, D>, _state: &Self::State) -> Option<T> {
+        None
+    }
+
+    /// Accumulated plastic strain, the integral of `sqrt(2/3 e : e)` with the deviator `e` of the plastic
+    /// strain rate; `None` of a law that knows none. Files ask for it, no step does.
+    #[inline]
+    fn plastic_strain(&self, _state: &Self::State) -> Option<T> {
+        None
+    }
 
     /// Strain energy per *current* volume (J/m3); per volume that never changes in small strain.
     fn energy_density(&self, stress: &SMatrix<T, D, D>, state: &Self::State) -> T;

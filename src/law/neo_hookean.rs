@@ -135,6 +135,12 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NeoHookean<T> {
         (modulus.max(T::zero()) / density).sqrt()
     }
 
+    /// `lambda ln(J) / J`: nothing is stretched off the plane.
+    fn off_plane_stress(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> Option<T> {
+        let j = determinant(&state.0);
+        (D < 3).then(|| self.moduli.lambda * j.ln() / j)
+    }
+
     fn energy_density(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         let Moduli { lambda, mu } = self.moduli;
         let half = T::one() / T::lit(2.0);

@@ -177,6 +177,13 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NewtonianFluid<T> {
         (modulus / density).sqrt()
     }
 
+    /// What the deviator of three dimensions, whose trace is zero, leaves of the pressure: `-3 p - tr(sigma)`
+    /// over the axes off the plane.
+    fn off_plane_stress(&self, stress: &SMatrix<T, D, D>, state: &Self::State) -> Option<T> {
+        let whole = -T::lit(3.0) * self.pressure(state) - stress.trace();
+        (D < 3).then(|| whole / T::count(3 - D))
+    }
+
     /// Work of compression from `J = 1`.
     fn energy_density(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         if self.is_separated(state) {

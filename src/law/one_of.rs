@@ -147,6 +147,28 @@ macro_rules! one_of_laws {
                 }
             }
 
+            fn off_plane_stress(
+                &self,
+                stress: &::nalgebra::SMatrix<T, $dimension, $dimension>,
+                state: &Self::State,
+            ) -> Option<T> {
+                match self {
+                    $(Self::$law(law) => {
+                        $crate::law::one_of::ask_own(state, |own| {
+                            $crate::law::ConstitutiveLaw::off_plane_stress(law, stress, own)
+                        })
+                    })+
+                }
+            }
+
+            fn plastic_strain(&self, state: &Self::State) -> Option<T> {
+                match self {
+                    $(Self::$law(law) => $crate::law::one_of::ask_own(state, |own| {
+                        $crate::law::ConstitutiveLaw::<T, $dimension>::plastic_strain(law, own)
+                    })),+
+                }
+            }
+
             fn energy_density(
                 &self,
                 stress: &::nalgebra::SMatrix<T, $dimension, $dimension>,

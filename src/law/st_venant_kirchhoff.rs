@@ -80,6 +80,12 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for StVenantKirchhoff<T> {
         (modulus.max(T::zero()) / density).sqrt()
     }
 
+    /// `lambda tr(E) / J`: nothing is stretched off the plane.
+    fn off_plane_stress(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> Option<T> {
+        let trace = green_strain(&state.0).trace();
+        (D < 3).then(|| self.moduli.lambda * trace / determinant(&state.0))
+    }
+
     fn energy_density(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         let strain = green_strain(&state.0);
         hooke(&self.moduli, &strain).dot(&strain) / (T::lit(2.0) * determinant(&state.0))

@@ -140,6 +140,14 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for VonMises<T> {
         (wave_modulus(&self.moduli, stress, j) / density).sqrt()
     }
 
+    fn off_plane_stress(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> Option<T> {
+        (D < 3).then(|| Self::off_plane_stress(self, state))
+    }
+
+    fn plastic_strain(&self, state: &Self::State) -> Option<T> {
+        Some(state.plastic_strain)
+    }
+
     /// The elastic energy; what hardening stores is counted as dissipated.
     fn energy_density(&self, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         let principal = state.stretch.principal();

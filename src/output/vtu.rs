@@ -65,6 +65,8 @@ pub struct PointCloud {
     pub positions: Vec<[f64; 3]>,
     /// What they carry.
     pub fields: Vec<PointField>,
+    /// Numbers about the whole, by name: `TimeValue` is what ParaView calls the time (s).
+    pub field_data: Vec<(String, f64)>,
 }
 
 impl PointCloud {
@@ -109,6 +111,14 @@ impl PointCloud {
     fn stream(&self, file: &mut dyn Write) -> io::Result<()> {
         let n = self.positions.len();
         file.write_all(HEAD.as_bytes())?;
+        if !self.field_data.is_empty() {
+            writeln!(file, "<FieldData>")?;
+            for (name, value) in &self.field_data {
+                let attributes = format!("{} NumberOfTuples=\"1\"", attributes(name, Components::Scalar));
+                array(file, "Float64", &attributes, [value.to_le_bytes()].into_iter())?;
+            }
+            writeln!(file, "</FieldData>")?;
+        }
         writeln!(file, "<Piece NumberOfPoints=\"{n}\" NumberOfCells=\"{n}\">")?;
         writeln!(file, "<PointData>")?;
         for field in &self.fields {

@@ -73,6 +73,18 @@ impl<T: Scalar, const D: usize> Lattice<T, D> {
         })
     }
 
+    /// The next particle along `axis`, upwards or downwards; `None` at the end of the box.
+    #[cfg(any(feature = "scene", test))]
+    pub(crate) fn neighbour(&self, index: usize, axis: usize, upwards: bool) -> Option<usize> {
+        let stride: usize = self.counts.iter().take(axis).product();
+        let count = self.counts.get(axis).copied()?;
+        let place = index / stride % count;
+        match upwards {
+            true => (place + 1 < count).then(|| index + stride),
+            false => (place > 0).then(|| index - stride),
+        }
+    }
+
     /// Position of a particle (m).
     pub(crate) fn position(&self, index: usize) -> SVector<T, D> {
         let half = T::one() / T::lit(2.0);
@@ -97,6 +109,24 @@ mod tests {
         let volume: f64 = points.iter().map(|p| p.1).sum();
         assert_relative_eq!(volume, 2.0, max_relative = 1e-13);
         assert!((points[0].0 - vector![1.0 / 60.0, 2.0 / 28.0]).norm() < 1e-15);
+    }
+
+    #[test]
+    fn neighbours_are_a_spacing_away_and_end_with_the_box() {
+        let grid = Grid::new(vector![0.0, 0.0], vector![3.0, 2.0], [3, 2]).unwrap();
+        let lattice = Lattice::new(&grid, &vector![0.0, 0.0], &vector![3.0, 2.0], [1, 1]);
+        assert_eq!(
+            [0, 2, 4].map(|k| lattice.neighbour(k, 0, true)),
+            [Some(1), None, Some(5)]
+        );
+        assert_eq!(
+            [0, 2, 4].map(|k| lattice.neighbour(k, 1, true)),
+            [Some(3), Some(5), None]
+        );
+        assert_eq!(
+            [0, 2, 4].map(|k| lattice.neighbour(k, 1, false)),
+            [None, None, Some(1)]
+        );
     }
 
     #[test]

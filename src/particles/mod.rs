@@ -1,5 +1,6 @@
 //! Material points: what they carry, how a body is filled with them, which cell holds them.
 
+mod bearable;
 mod bins;
 mod cast;
 mod lattice;

@@ -3,6 +3,7 @@
 use nalgebra::SMatrix;
 
 use super::Particles;
+use super::bearable::bearable;
 use crate::error::SetupError;
 use crate::law::ConstitutiveLaw;
 use crate::scalar::Scalar;
@@ -22,15 +23,28 @@ impl<T: Scalar, const D: usize, S: Copy, P> Particles<T, D, S, P> {
         off_plane: impl Fn(usize, &SMatrix<T, D, D>) -> Option<T>,
     ) -> Result<(), SetupError> {
         for (particle, (state, stress)) in self.state.iter_mut().zip(&self.stress).enumerate() {
+            let off_plane = off_plane(particle, stress);
             *state = law
-                .start(stress, off_plane(particle, stress))
-                .ok_or_else(|| SetupError::Value {
+                .start(stress, off_plane)
+                .ok_or_else(|| SetupError::InitialStress {
                     particle,
-                    name: "stress",
-                    value: stress[(0, 0)].primal(),
-                    allowed: "its law cannot start under such a stress",
+                    position: self.position[particle].iter().map(|x| x.primal()).collect(),
+                    stress: components(stress),
+                    allowed: bearable(law, stress, off_plane),
                 })?;
         }
         Ok(())
     }
+}
+
+/// The components with their names, for messages: `xx`, `xy`, `yy`.
+fn components<T: Scalar, const D: usize>(stress: &SMatrix<T, D, D>) -> Vec<(String, f64)> {
+    let name = |a: usize| ["x", "y", "z"].get(a).copied().unwrap_or("?");
+    let places = (0..D).flat_map(|row| (row..D).map(move |column| (row, column)));
+    places
+        .map(|place| {
+            let value = stress.get(place).map_or(f64::NAN, |s| s.primal());
+            (format!("{}{}", name(place.0), name(place.1)), value)
+        })
+        .collect()
 }

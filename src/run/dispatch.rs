@@ -90,11 +90,13 @@ where
             particles,
             liquid,
             surface,
+            first_particles,
         } = start.initial;
         let rest = Rest {
             scene: start.scene,
             law,
             surface,
+            first_particles,
         };
         match start.scene.material.phases {
             Phases::One { .. } => rest.stepper(basis, reconstruction, OnePhase, particles.into_cast()),
@@ -128,9 +130,31 @@ struct Rest<'a, L> {
     scene: &'a Scene,
     law: L,
     surface: Vec<SurfacePoint<f64>>,
+    first_particles: Vec<usize>,
 }
 
 impl<L> Rest<'_, L> {
+    /// An error of the initial stress with the body whose particle it is about.
+    fn of_body(&self, error: SetupError) -> RunError {
+        match error {
+            SetupError::InitialStress {
+                particle,
+                position,
+                stress,
+                allowed,
+            } => {
+                let first = self.first_particles.iter().rposition(|&first| first <= particle);
+                RunError::InitialStress {
+                    body: first.unwrap_or(0),
+                    position,
+                    stress,
+                    allowed,
+                }
+            }
+            error => error.into(),
+        }
+    }
+
     fn stepper<T, B, R, P, const D: usize>(
         self,
         basis: B,
@@ -149,7 +173,8 @@ impl<L> Rest<'_, L> {
     {
         reconstruction.lend_virtual_points(self.scene.method.virtual_points);
         if self.scene.bodies.iter().any(|body| body.stress.is_some()) {
-            particles.start_under_stress(&self.law, |_, _| None)?;
+            let started = particles.start_under_stress(&self.law, |_, _| None);
+            started.map_err(|error| self.of_body(error))?;
         }
         let stepper = Stepper::new(Setup {
             grid: grid(self.scene)?,

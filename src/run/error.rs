@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::checkpoint::CheckpointError;
-use crate::error::{GridError, SetupError, StepError};
+use crate::error::{GridError, SetupError, StepError, named};
 use crate::method::Method;
 use crate::output::OutputError;
 use crate::reference::ReferenceError;
@@ -57,6 +57,21 @@ pub enum RunError {
         /// Number of the body, from 0.
         index: usize,
     },
+    /// A stress at the start that the law cannot bear.
+    #[error(
+        "body.{body}.stress: at {position:.4?} m it is {}, which the law cannot start under; {allowed}",
+        named(stress)
+    )]
+    InitialStress {
+        /// Number of the body, from 0.
+        body: usize,
+        /// Where (m).
+        position: Vec<f64>,
+        /// Components of the stress (Pa) by name.
+        stress: Vec<(String, f64)>,
+        /// What the law bears instead.
+        allowed: String,
+    },
     /// `step = "auto"` on particles that nothing resists.
     #[error(
         "time.step = \"auto\": nothing resists a motion of these particles, so no step is critical; give a number"
@@ -85,7 +100,7 @@ pub enum RunError {
         remedy: &'static str,
     },
     /// The run stopped on the way.
-    #[error("{source}; {}", advice(*dt, *critical, remedy))]
+    #[error("{source}; {}{note}", advice(*dt, *critical, remedy))]
     Stopped {
         /// What happened, at which step, to which particle.
         source: StepError,
@@ -95,6 +110,8 @@ pub enum RunError {
         critical: Option<f64>,
         /// What helps against a step above it, besides a smaller one.
         remedy: &'static str,
+        /// What else was seen in the particles as they are then: empty, or the end of a sentence.
+        note: String,
     },
 }
 

@@ -3,12 +3,11 @@
 use std::path::PathBuf;
 
 use super::error::RunError;
-use super::fields::{FieldValues, for_each_field};
-use super::norms::Exact;
+use super::particle_cloud::point_cloud;
+use super::particle_fields::Snapshot;
 use super::particle_table::particle_table;
-use crate::output::{Components, Folder, PointCloud, PointField, Series, SeriesFrame};
-use crate::particles::Particles;
-use crate::phase::PoreLiquid;
+use super::schedule::Schedule;
+use crate::output::{Folder, Series, SeriesFrame, is_frame};
 use crate::scene::{ParticleOutput, Scene};
 
 /// Writes particles in the format that the scene asks for, and remembers what was written.
@@ -19,6 +18,39 @@ pub(super) struct Frames<'a> {
     /// Those of either format, with when they are of.
     written: Vec<SeriesFrame>,
     pub(super) files: Vec<PathBuf>,
+    /// Numbers of particles of the bodies.
+    pub(super) bodies: Vec<usize>,
+}
+
+/// When particles are written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Moment {
+    /// Steps taken, or `None` at the end.
+    pub(super) step: Option<usize>,
+    /// Time (s) of positions and stresses.
+    pub(super) time: f64,
+    /// Time (s) at which the velocities live.
+    pub(super) velocity_time: f64,
+}
+
+impl Moment {
+    /// After `done` steps on the way.
+    pub(super) fn after(scene: &Scene, schedule: &Schedule, done: usize) -> Self {
+        Self {
+            step: Some(done),
+            time: schedule.time(done),
+            velocity_time: schedule.velocity_time(done, scene.time.half_kick),
+        }
+    }
+
+    /// At the end.
+    pub(super) fn end(scene: &Scene, schedule: &Schedule) -> Self {
+        Self {
+            step: None,
+            time: schedule.end,
+            velocity_time: schedule.velocity_time(schedule.steps, scene.time.half_kick),
+        }
+    }
 }
 
 impl<'a> Frames<'a> {
@@ -34,6 +66,7 @@ impl<'a> Frames<'a> {
             series,
             files: written.iter().filter_map(place).collect(),
             written,
+            bodies: Vec::new(),
         }
     }
 
@@ -59,6 +92,17 @@ impl<'a> Frames<'a> {
         })
     }
 
+    /// Removes what a former run left in the folder: temporary files of killed processes and, unless this run
+    /// goes on with it, its frames. Returns their names.
+    pub(super) fn clear(&self, resumed: bool) -> Vec<String> {
+        let csv = self.scene.output.particles == ParticleOutput::Csv;
+        // A table of the end is replaced when there is another.
+        let is_old = |name: &str| !resumed && (is_frame(name) || !csv && name == "particles.csv");
+        self.folder
+            .map(|folder| folder.remove_left_over(is_old))
+            .unwrap_or_default()
+    }
+
     /// Whether anything is written at all.
     pub(super) fn are_wanted(&self) -> bool {
         self.folder.is_some() && self.scene.output.particles != ParticleOutput::None
@@ -69,29 +113,29 @@ impl<'a> Frames<'a> {
         self.are_wanted() && self.scene.output.particles == ParticleOutput::Vtu
     }
 
-    /// Writes the particles at `time` (s), after `step` steps or, without it, at the end.
+    /// Writes the particles.
     pub(super) fn write<const D: usize>(
         &mut self,
-        step: Option<usize>,
-        time: f64,
-        particles: &Particles<f64, D>,
-        liquid: &[PoreLiquid<f64, D>],
+        moment: Moment,
+        snapshot: &Snapshot<'_, D>,
     ) -> Result<(), RunError> {
         let Some(folder) = self.folder else {
             return Ok(());
         };
+        let Moment { step, time, .. } = moment;
         match self.scene.output.particles {
             ParticleOutput::None => {}
             ParticleOutput::Csv => {
                 let name = step.map_or("particles.csv".to_owned(), |step| {
                     format!("particles-{step:08}.csv")
                 });
-                let table = particle_table(self.scene, particles, liquid);
+                let table = particle_table(self.scene, snapshot, &self.bodies);
                 self.files.push(table.write_csv(folder, &name)?);
                 self.written.push(SeriesFrame { time, file: name });
             }
             ParticleOutput::Vtu => {
-                let path = self.series.add(folder, time, &cloud(particles, liquid))?;
+                let cloud = point_cloud(self.scene, snapshot, &self.bodies, moment);
+                let path = self.series.add(folder, time, &cloud)?;
                 self.files.push(path);
                 self.written.extend(self.series.frames.last().cloned());
                 if step.is_none() {
@@ -100,49 +144,5 @@ impl<'a> Frames<'a> {
             }
         }
         Ok(())
-    }
-}
-
-fn cloud<const D: usize>(particles: &Particles<f64, D>, liquid: &[PoreLiquid<f64, D>]) -> PointCloud {
-    let in_space = |x: &[f64]| std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0));
-    let positions = particles.position.iter().map(|x| in_space(x.as_slice()));
-    let mut cloud = PointCloud {
-        positions: positions.collect(),
-        fields: Vec::new(),
-    };
-    for_each_field(particles, liquid, &Exact::default(), |field| {
-        cloud.fields.push(point_field::<D>(&field));
-    });
-    let density = (0..particles.len()).map(|p| particles.density(p)).collect();
-    cloud.fields.push(PointField {
-        name: "density[kg/m3]".to_owned(),
-        components: Components::Scalar,
-        values: density,
-    });
-    cloud
-}
-
-/// A field with the components that it has in three dimensions.
-fn point_field<const D: usize>(field: &FieldValues) -> PointField {
-    let name = format!("{}[{}]", field.name, field.unit);
-    let each = field.values.chunks(field.components.max(1));
-    let (components, values) = if D == 1 || field.components == 1 {
-        (Components::Scalar, field.values.clone())
-    } else if field.components == D {
-        let padded = each.flat_map(|v| (0..3).map(|a| v.get(a).copied().unwrap_or(0.0)));
-        (Components::Vector, padded.collect())
-    } else {
-        const ORDER: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
-        let entry = |m: &[f64], row: usize, column: usize| match row.max(column) < D {
-            true => m.get(column * D + row).copied().unwrap_or(0.0),
-            false => 0.0,
-        };
-        let padded = each.flat_map(|m| ORDER.map(|(row, column)| entry(m, row, column)));
-        (Components::Symmetric, padded.collect())
-    };
-    PointField {
-        name,
-        components,
-        values,
     }
 }

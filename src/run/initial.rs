@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::dispatch::per_axis;
+use super::dispatch::{grid, per_axis};
 use super::error::RunError;
 use super::space::InSpace;
 use super::state::set;
@@ -20,6 +20,8 @@ pub(super) struct Initial<const D: usize> {
     /// In two phases one for each particle.
     pub(super) liquid: Vec<PoreLiquid<f64, D>>,
     pub(super) surface: Vec<SurfacePoint<f64>>,
+    /// Number of the first particle of each body.
+    pub(super) first_particles: Vec<usize>,
 }
 
 /// The particles of one body, and where each is in its lattice.
@@ -57,13 +59,25 @@ where
         }
         all.surface
             .extend(surfaces(scene, body, &filling, all.particles.len())?);
+        all.first_particles.push(all.particles.len());
         append(&mut all.particles, filling.particles);
         move_to(&mut all.liquid, liquid);
     }
     Ok(all)
 }
 
-fn fill<const D: usize>(scene: &Scene, body: &Body, grid: &Grid<f64, D>) -> Result<Filling<D>, RunError> {
+/// How many particles each body has.
+pub(super) fn body_sizes<const D: usize>(scene: &Scene) -> Result<Vec<usize>, RunError> {
+    let grid = grid(scene)?;
+    let size = |body| keep::<D>(body, &grid).map(|(_, kept)| kept.len());
+    scene.bodies.iter().map(size).collect()
+}
+
+/// The lattice of a body, and its particles that are kept, ascending.
+pub(super) fn keep<const D: usize>(
+    body: &Body,
+    grid: &Grid<f64, D>,
+) -> Result<(Lattice<f64, D>, Vec<usize>), RunError> {
     let corner = |values: &[f64]| SVector::from(per_axis(values, f64::NAN));
     let (min, max) = (corner(&body.min), corner(&body.max));
     let lattice = Lattice::new(grid, &min, &max, per_axis(&body.particles_per_cell, 1));
@@ -77,6 +91,16 @@ fn fill<const D: usize>(scene: &Scene, body: &Body, grid: &Grid<f64, D>) -> Resu
             kept.push(k);
         }
     }
+    Ok((lattice, kept))
+}
+
+/// The particles of a body before they are given their initial values.
+pub(super) fn fill<const D: usize>(
+    scene: &Scene,
+    body: &Body,
+    grid: &Grid<f64, D>,
+) -> Result<Filling<D>, RunError> {
+    let (lattice, kept) = keep(body, grid)?;
     let mut random = fastrand::Rng::with_seed(body.seed);
     let (spacing, volume) = (lattice.spacing(), lattice.volume());
     let points = kept.iter().map(|&k| {

@@ -44,7 +44,7 @@ pub(super) fn warnings(
     schedule: &Schedule,
     critical: impl FnOnce() -> Result<Option<CriticalStep<f64>>, RunError>,
 ) -> Result<Vec<String>, RunError> {
-    let mut warnings: Vec<String> = method_warning(scene).into_iter().collect();
+    let mut warnings = of_method(scene);
     // "auto" stays below by itself.
     if let StepSize::Fixed(_) = scene.time.step
         && let Some(limit) = critical()?
@@ -59,6 +59,11 @@ pub(super) fn warnings(
         ));
     }
     Ok(warnings)
+}
+
+/// Warnings of the method alone.
+pub(super) fn of_method(scene: &Scene) -> Vec<String> {
+    method_warning(scene).into_iter().collect()
 }
 
 /// A warning of a combination of method and model that cannot be relied on, if the scene asks for one: `docs/two-phase.md` has

@@ -7,11 +7,13 @@ use super::Progress;
 use super::checkpoint;
 use super::critical_step_in;
 use super::error::RunError;
-use super::frames::Frames;
+use super::frames::{Frames, Moment};
 use super::limits::remedy;
 use super::loads::forcing;
+use super::particle_fields::Snapshot;
 use super::schedule::Schedule;
 use super::space::InSpace;
+use super::warnings;
 use crate::scene::Scene;
 use crate::stepper::Simulation;
 
@@ -128,7 +130,7 @@ where
         start_energy(simulation, &mut march, from.done == steps)?;
     }
     if from.done == 0 && frames.begin_at_start() {
-        frames.write(Some(0), 0.0, &simulation.particles(), &simulation.liquid())?;
+        write_frame(journey, 0, frames, simulation)?;
     }
     let driver = scene.driver()?;
     progress(Progress {
@@ -142,22 +144,30 @@ where
         if let Some(driver) = &driver {
             simulation.set_body_forces(&|x| driver.body_force(x, schedule.time(step)));
         }
+        let kick = schedule.kick(step, scene.time.half_kick);
         let done = step + 1;
         let due = journey.due(done);
         // The energy of a step is that at its start, the first one's that at the start of the run.
         let measured = match due.sample || step == 0 {
-            true => simulation.step_and_measure(dt, &forcing).map(Some),
-            false => simulation.step(dt, &forcing).map(|()| None),
+            true => simulation.step_and_measure(kick, dt, &forcing).map(Some),
+            false => simulation.step_with_kick(kick, dt, &forcing).map(|()| None),
         };
         let energy = match measured {
             Ok(energy) => energy,
             Err(source) => {
                 let (critical, remedy) = limit::<D>(scene);
+                // Strains of an unstable step say nothing of the scene.
+                let stable = critical.is_none_or(|limit| dt <= limit);
+                let strained = match stable {
+                    true => warnings::small_strain(scene, &simulation.particles(), schedule.dt)?,
+                    false => None,
+                };
                 return Err(RunError::Stopped {
                     source,
                     dt,
                     critical,
                     remedy,
+                    note: strained.map_or_else(String::new, |warning| format!("; {warning}")),
                 });
             }
         };
@@ -172,8 +182,7 @@ where
                 refuse_no_energy(scene, simulation.energy().total(), (done, dt))?;
             }
             if due.frame && frames.are_wanted() {
-                let (particles, liquid) = (simulation.particles(), simulation.liquid());
-                frames.write(Some(done), schedule.time(done), &particles, &liquid)?;
+                write_frame(journey, done, frames, simulation)?;
             }
             if due.checkpoint {
                 let energy = march.energy;
@@ -185,6 +194,20 @@ where
         }
     }
     Ok(march)
+}
+
+fn write_frame<const D: usize>(
+    journey: &Journey<'_>,
+    done: usize,
+    frames: &mut Frames<'_>,
+    simulation: &dyn Simulation<D>,
+) -> Result<(), RunError> {
+    let snapshot = Snapshot {
+        particles: &simulation.particles(),
+        liquid: &simulation.liquid(),
+        law: &simulation.material_fields(),
+    };
+    frames.write(Moment::after(journey.scene, journey.schedule, done), &snapshot)
 }
 
 /// Refuses a start whose energy is no number; if no step follows, it is the run's.

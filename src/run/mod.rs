@@ -7,10 +7,13 @@ mod fields;
 mod frames;
 mod history_law;
 mod initial;
+mod invariants;
 mod limits;
 mod loads;
 mod march;
 mod norms;
+mod particle_cloud;
+mod particle_fields;
 mod particle_table;
 mod rate_law;
 mod reference;
@@ -19,10 +22,12 @@ mod space;
 mod state;
 mod summary;
 mod surface;
+mod warnings;
 
 pub use checkpoint::CheckpointError;
 pub use error::RunError;
 pub use fields::FieldValues;
+pub use invariants::Invariants;
 pub use limits::mechanism;
 pub use norms::{ErrorNorms, Exact};
 pub use space::InSpace;
@@ -31,16 +36,17 @@ pub use summary::{ConservationSummary, EnergySummary, MethodSummary, Summary};
 use std::path::{Path, PathBuf};
 
 use checkpoint::Checkpoint;
-use frames::Frames;
+use frames::{Frames, Moment};
 use loads::forcing;
 use march::{ENERGY_SAMPLES, Journey, Milestone, march};
+use particle_fields::Snapshot;
 use schedule::Schedule;
 
 use crate::output::Folder;
 use crate::particles::Particles;
 use crate::phase::PoreLiquid;
 use crate::scene::Scene;
-use crate::stepper::{CriticalStep, Simulation};
+use crate::stepper::{CriticalStep, MaterialFields, Simulation};
 
 /// How far a run has come.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +66,8 @@ pub struct Outcome<const D: usize = 1> {
     pub particles: Particles<f64, D>,
     /// Their liquid; empty in one phase.
     pub liquid: Vec<PoreLiquid<f64, D>>,
+    /// What the law knows of them besides the stress.
+    pub law: MaterialFields,
     /// Reference at the particles; empty without one.
     pub exact: Exact,
     /// Files written.
@@ -75,6 +83,12 @@ impl<const D: usize> Outcome<D> {
     /// The same one by one: of many particles there need not be all fields at a time.
     pub fn for_each_field(&self, f: impl FnMut(FieldValues)) {
         fields::for_each_field(&self.particles, &self.liquid, &self.exact, f);
+    }
+
+    /// Mean and von Mises stress of the particles, with the stress off the plane; none where the law does not
+    /// know that, nor along one axis.
+    pub fn invariants(&self) -> impl Iterator<Item = Invariants> {
+        particle_fields::invariants(&self.particles.stress, &self.law)
     }
 }
 
@@ -141,13 +155,19 @@ where
     let schedule = Schedule::new(scene)?;
     let open = |path: &Path| Checkpoint::open(path, scene, &schedule);
     let checkpoint = checkpoint.map(open).transpose()?;
+    let resumed = checkpoint.is_some();
     let mut warnings = limits::warnings(scene, &schedule, || critical_step_in(scene))?;
+    warnings.extend(warnings::warnings::<D>(scene, Some(&schedule))?);
     let mut simulation = scene.build(schedule.dt)?;
     let (from, written) = match checkpoint {
         Some(checkpoint) => checkpoint.restore(simulation.as_mut())?,
         None => (Milestone::default(), Vec::new()),
     };
     let mut frames = Frames::new(scene, folder, written);
+    if frames.are_wanted() {
+        frames.bodies = initial::body_sizes::<D>(scene)?;
+    }
+    let removed = frames.clear(resumed);
     warnings.extend(frames.warning());
     let journey = Journey {
         scene,
@@ -158,9 +178,18 @@ where
     let march = march(&journey, simulation.as_mut(), &mut frames, progress)?;
     let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, &march);
     summary.warnings = warnings;
+    summary.removed = removed;
+    let law = simulation.material_fields();
     let (particles, liquid) = simulation.into_particles();
-    frames.write(None, schedule.end, &particles, &liquid)?;
+    let snapshot = Snapshot {
+        particles: &particles,
+        liquid: &liquid,
+        law: &law,
+    };
+    frames.write(Moment::end(scene, &schedule), &snapshot)?;
     let exact = scene.exact(&particles, &schedule)?;
+    let strained = warnings::small_strain(scene, &particles, schedule.dt)?;
+    summary.warnings.extend(strained);
     summary.errors = ErrorNorms::all(&particles, &liquid, &exact);
     let mut files = frames.files;
     files.extend(march.checkpoint);
@@ -168,6 +197,7 @@ where
         summary,
         particles,
         liquid,
+        law,
         exact,
         files,
     })
@@ -215,6 +245,23 @@ where
     };
     let march = march(&journey, simulation.as_mut(), &mut frames, &mut |_| {})?;
     Ok(march.wall.as_secs_f64())
+}
+
+/// What a user should know of a scene before it runs, besides its step; a run says it too.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn warnings(scene: &Scene) -> Result<Vec<String>, RunError> {
+    let mut found = limits::of_method(scene);
+    found.extend(in_dimension!(scene, warnings_in(scene))?);
+    Ok(found)
+}
+
+fn warnings_in<const D: usize>(scene: &Scene) -> Result<Vec<String>, RunError>
+where
+    Scene: InSpace<D>,
+{
+    warnings::warnings::<D>(scene, None)
 }
 
 /// Largest stable time step (s) of the scene's initial layout; `None` if nothing resists a motion.

@@ -39,7 +39,8 @@ impl Exact {
     ) -> Result<Self, RunError> {
         let points: Vec<f64> = particles.initial_position.iter().map(|x| x[0]).collect();
         let start = scene.reference.map_or(0.0, |reference| reference.start());
-        let [middle, end] = [schedule.velocity_time(), schedule.end].map(|time| start + time);
+        let middle = schedule.velocity_time(schedule.steps, scene.time.half_kick);
+        let [middle, end] = [middle, schedule.end].map(|time| start + time);
         let mut exact = Self::default();
         match solution {
             Solution::One(mut solution) => {
@@ -72,8 +73,10 @@ impl Exact {
         schedule: &Schedule,
     ) -> Self {
         let mut exact = Self::default();
+        // At least one step is taken, so that the start has no say.
+        let middle = schedule.velocity_time(schedule.steps, false);
         for x in &particles.initial_position {
-            let velocity = reference.at(x, schedule.velocity_time()).velocity;
+            let velocity = reference.at(x, middle).velocity;
             exact.velocity.extend(velocity.iter());
             let state = reference.at(x, schedule.end);
             exact.displacement.extend(state.displacement.iter());

@@ -69,9 +69,34 @@ impl Schedule {
         }
     }
 
-    /// Time (s) at which the velocity lives at the end of the run: the middle of the last step.
-    pub(super) fn velocity_time(&self) -> f64 {
-        self.end - self.size(self.steps - 1) / 2.0
+    /// Time (s) over which the velocities are kicked in step `step` (from 0): from the middle of the step
+    /// before to that of this one if they start at time zero (`half_kick`), and otherwise the whole step, as
+    /// the papers have it.
+    pub(super) fn kick(&self, step: usize, half_kick: bool) -> f64 {
+        match (half_kick, step.checked_sub(1)) {
+            (false, _) => self.size(step),
+            (true, None) => self.size(step) / 2.0,
+            // Equal steps give their size to the bit.
+            (true, Some(before)) => (self.size(before) + self.size(step)) / 2.0,
+        }
+    }
+
+    /// Time (s) at which the velocities live after `done` steps: the middle of the last one. At the start
+    /// they are those of time zero, or of half a step before where the first kick is a whole step.
+    pub(super) fn velocity_time(&self, done: usize, half_kick: bool) -> f64 {
+        match done.checked_sub(1) {
+            Some(last) => self.time_after(done) - self.size(last) / 2.0,
+            None if half_kick => 0.0,
+            None => -self.size(0) / 2.0,
+        }
+    }
+
+    /// Time (s) after `done` steps.
+    pub(super) fn time_after(&self, done: usize) -> f64 {
+        match done == self.steps {
+            true => self.end,
+            false => self.time(done),
+        }
     }
 }
 
@@ -86,6 +111,23 @@ mod tests {
         let rest = Schedule::fixed(0.3, 1.0);
         assert_eq!(rest.steps, 4);
         assert!((rest.size(3) - 0.1).abs() < 1e-15);
-        assert!((rest.velocity_time() - 0.95).abs() < 1e-15);
+        assert!((rest.velocity_time(4, false) - 0.95).abs() < 1e-15);
+    }
+
+    #[test]
+    fn velocities_live_in_the_middle_of_steps_and_kicks_lead_from_one_to_the_next() {
+        let rest = Schedule::fixed(0.3, 1.0);
+        let mut time = rest.velocity_time(0, true);
+        assert_eq!(time, 0.0);
+        for step in 0..rest.steps {
+            time += rest.kick(step, true);
+            assert!(
+                (time - rest.velocity_time(step + 1, true)).abs() < 1e-15,
+                "{step}"
+            );
+        }
+        assert_eq!(rest.velocity_time(0, false), -0.15);
+        assert_eq!([0, 1, 2].map(|step| rest.kick(step, false)), [0.3; 3]);
+        assert_eq!([0, 1, 2].map(|step| rest.kick(step, true)), [0.15, 0.3, 0.3]);
     }
 }

@@ -198,7 +198,14 @@ macro_rules! beyond_one_axis {
             ) -> Result<InitialState<'a, $dimension>, RunError> {
                 match self.driver()? {
                     None => Ok(Box::new(move |x| by_expressions(body, x))),
-                    Some(reference) => Ok(Box::new(move |x| Ok(started(reference.as_ref(), x, dt)))),
+                    Some(reference) => {
+                        // The first kick leads from where the velocity lives at the start to half a step
+                        // after it.
+                        let before = if self.time.half_kick { 0.0 } else { dt / 2.0 };
+                        Ok(Box::new(move |x| {
+                            Ok(started(reference.as_ref(), x, before))
+                        }))
+                    }
                 }
             }
 
@@ -223,10 +230,10 @@ macro_rules! beyond_one_axis {
 beyond_one_axis!(2);
 beyond_one_axis!(3);
 
-/// The reference's state at the start, its velocity half a step before, where the stepper's lives.
-fn started<const D: usize>(reference: &dyn FieldReference<D>, x: &SVector<f64, D>, dt: f64) -> Values<D> {
+/// The reference's state at the start, its velocity a time `before` (s), where the stepper's lives.
+fn started<const D: usize>(reference: &dyn FieldReference<D>, x: &SVector<f64, D>, before: f64) -> Values<D> {
     let at_start = reference.at(x, 0.0);
-    let velocity = reference.at(x, -dt / 2.0).velocity;
+    let velocity = reference.at(x, -before).velocity;
     Values {
         displacement: at_start.displacement,
         velocity,

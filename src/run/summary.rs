@@ -123,6 +123,9 @@ pub struct Summary {
     pub steps: usize,
     /// Time reached (s).
     pub time: f64,
+    /// Time (s) at which the velocities live that a run leaves behind: the middle of the last step. Positions
+    /// and stresses are those of `time`.
+    pub velocity_time: f64,
     /// Size of a step (s).
     pub time_step: f64,
     /// Time of the step loop on the clock (s); of a resumed run that of the steps taken since.
@@ -146,6 +149,10 @@ pub struct Summary {
     /// What the user should know although the run was done.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+    /// Files that a former run had left in the output folder and that were removed: frames that this run does
+    /// not go on with, and temporary files of killed processes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub removed: Vec<String>,
 }
 
 impl Summary {
@@ -185,6 +192,7 @@ impl Summary {
             dofs: simulation.dof_count(),
             steps: schedule.steps,
             time: schedule.end,
+            velocity_time: schedule.velocity_time(schedule.steps, scene.time.half_kick),
             time_step: schedule.dt,
             wall_seconds,
             particle_steps_per_second,
@@ -203,6 +211,7 @@ impl Summary {
                 wall_gain: rubs.then_some(diagnostics.wall_gain),
             },
             warnings: Vec::new(),
+            removed: Vec::new(),
         }
     }
 }

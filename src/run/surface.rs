@@ -1,18 +1,19 @@
 //! The surfaces of a scene's bodies that the stepper must know.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use nalgebra::SVector;
 
 use super::error::RunError;
 use super::initial::Filling;
 use crate::grid::{Face, Side};
-use crate::scene::{Body, Boundary, BoundaryKind, Scene};
+use crate::scene::{Body, Boundary, BoundaryKind, FORGIVEN, Scene};
 use crate::stepper::SurfacePoint;
 
 /// The surfaces of `body`, whose particles are those of `filling` and are numbered from `first` on: in one phase those that bear a
 /// traction, where its boundary says so; in two every end at which a load, a pressure outside or the solid's skin acts on the liquid, that is, all but
-/// the held and sealed ones. Beyond one dimension each row of the lattice that ends there has a point.
+/// the held and sealed ones. Beyond one dimension each row of the lattice has a point wherever it ends, also
+/// at a hole.
 pub(super) fn surfaces<const D: usize>(
     scene: &Scene,
     body: &Body,
@@ -20,13 +21,17 @@ pub(super) fn surfaces<const D: usize>(
     first: usize,
 ) -> Result<Vec<SurfacePoint<f64>>, RunError> {
     let mut points = Vec::new();
-    for face in Face::all::<D>().filter(|&face| is_needed(scene, body, face)) {
+    for face in Face::all::<D>().filter(|&face| is_needed(scene, face)) {
         let area = filling.lattice.volume() / filling.lattice.spacing()[face.axis];
-        for particle in ends(filling, face) {
+        for end in ends(filling, face) {
+            let particle = end.particle;
+            if end.of_box && is_sealed_wall(scene, body, face) {
+                continue;
+            }
             let loaded = acts_at(scene, face, &filling.particles.position[particle])?;
             // The liquid meets a surface whether it bears a load or not.
             let needed = loaded || scene.material.phases.count() > 1;
-            if needed && !touches_another(scene, body, filling, particle, face) {
+            if needed && !touches_another(scene, body, filling, particle, face)? {
                 points.push(SurfacePoint {
                     particle: first + particle,
                     face,
@@ -41,7 +46,11 @@ pub(super) fn surfaces<const D: usize>(
 }
 
 /// Whether the boundary at `face` says that its traction acts at `x` (m).
-fn acts_at<const D: usize>(scene: &Scene, face: Face, x: &SVector<f64, D>) -> Result<bool, RunError> {
+pub(super) fn acts_at<const D: usize>(
+    scene: &Scene,
+    face: Face,
+    x: &SVector<f64, D>,
+) -> Result<bool, RunError> {
     let mut there = scene.boundaries.iter().filter(|boundary| boundary.face == face);
     match there.find_map(|boundary| boundary.inside.as_ref()) {
         Some(inside) => Ok(inside.eval_at(x.as_slice())? > 0.0),
@@ -49,61 +58,91 @@ fn acts_at<const D: usize>(scene: &Scene, face: Face, x: &SVector<f64, D>) -> Re
     }
 }
 
-fn is_needed(scene: &Scene, body: &Body, face: Face) -> bool {
+fn is_needed(scene: &Scene, face: Face) -> bool {
     let boundary = scene.boundaries.iter().find(|boundary| boundary.face == face);
-    if scene.material.phases.count() == 1 {
-        return boundary.is_some_and(|b| matches!(b.kind, BoundaryKind::Traction(_)));
-    }
+    scene.material.phases.count() > 1 || boundary.is_some_and(|b| matches!(b.kind, BoundaryKind::Traction(_)))
+}
+
+/// Whether the end of the body's box meets a wall of the grid that holds the solid and lets no liquid pass;
+/// in one phase there is no liquid.
+fn is_sealed_wall(scene: &Scene, body: &Body, face: Face) -> bool {
+    let boundary = scene.boundaries.iter().find(|boundary| boundary.face == face);
     let sealed_wall = |boundary: &Boundary| boundary.is_held() && !boundary.is_open();
     let same = |a: &[f64], b: &[f64]| a.get(face.axis) == b.get(face.axis);
     let at_face = match face.side {
         Side::Min => same(&body.min, &scene.grid.min),
         Side::Max => same(&body.max, &scene.grid.max),
     };
-    !(at_face && boundary.is_some_and(sealed_wall))
+    scene.material.phases.count() > 1 && at_face && boundary.is_some_and(sealed_wall)
 }
 
-/// The last particle towards the face of each row of the lattice along its axis, ascending.
-fn ends<const D: usize>(filling: &Filling<D>, face: Face) -> Vec<usize> {
-    let mut last: BTreeMap<[usize; D], (usize, usize)> = BTreeMap::new();
-    for (particle, &k) in filling.kept.iter().enumerate() {
-        let mut row = filling.lattice.place(k);
-        let along = std::mem::take(&mut row[face.axis]);
-        let end = last.entry(row).or_insert((along, particle));
-        let further = match face.side {
-            Side::Min => along < end.0,
-            Side::Max => along > end.0,
-        };
-        if further {
-            *end = (along, particle);
+/// A particle beyond which, towards a face, its body has no other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct End {
+    pub(super) particle: usize,
+    /// Whether the body's box ends there too, and not the shape alone.
+    of_box: bool,
+}
+
+/// Where the rows of the lattice along the face's axis end towards it, ascending: at the last particle, and
+/// at every hole before it.
+pub(super) fn ends<const D: usize>(filling: &Filling<D>, face: Face) -> Vec<End> {
+    let (lattice, upwards) = (&filling.lattice, face.side == Side::Max);
+    let mut there = vec![false; lattice.len()];
+    for &k in &filling.kept {
+        if let Some(there) = there.get_mut(k) {
+            *there = true;
         }
     }
-    let mut particles: Vec<_> = last.into_values().map(|(_, particle)| particle).collect();
-    particles.sort_unstable();
-    particles
+    let end = |(particle, &k): (usize, &usize)| {
+        let next = lattice.neighbour(k, face.axis, upwards);
+        let goes_on = next.is_some_and(|next| there.get(next).copied().unwrap_or(false));
+        (!goes_on).then(|| End {
+            particle,
+            of_box: next.is_none(),
+        })
+    };
+    filling.kept.iter().enumerate().filter_map(end).collect()
+}
+
+/// Rows of the lattice along the face's axis that hold particles.
+pub(super) fn rows<const D: usize>(filling: &Filling<D>, face: Face) -> usize {
+    let row = |&k: &usize| {
+        let mut row = filling.lattice.place(k);
+        row[face.axis] = 0;
+        row
+    };
+    filling.kept.iter().map(row).collect::<BTreeSet<_>>().len()
 }
 
 /// Whether another body begins where this one ends, next to the particle.
+///
+/// A box ends half a particle beyond the last one, and round-off is forgiven; where shapes say where bodies
+/// are, their ends are known to a particle.
 fn touches_another<const D: usize>(
     scene: &Scene,
     body: &Body,
     filling: &Filling<D>,
     particle: usize,
     face: Face,
-) -> bool {
-    let x = &filling.particles.position[particle];
-    let meets = |a: &[f64], b: &[f64]| a.get(face.axis) == b.get(face.axis);
-    let beside = |other: &Body| {
-        let mut bounds = other.min.iter().zip(&other.max).zip(x.iter()).enumerate();
-        bounds.all(|(axis, ((low, high), x))| axis == face.axis || (low <= x && x <= high))
+) -> Result<bool, RunError> {
+    let (lattice, axis) = (&filling.lattice, face.axis);
+    let Some(&k) = filling.kept.get(particle) else {
+        return Ok(false);
     };
-    scene.bodies.iter().any(|other| {
-        let meets = match face.side {
-            Side::Min => meets(&other.max, &body.min),
-            Side::Max => meets(&other.min, &body.max),
+    for other in scene.bodies.iter().filter(|&other| !std::ptr::eq(other, body)) {
+        let shaped = body.inside.is_some() || other.inside.is_some();
+        let reach = if shaped { 1.0 } else { 0.5 + FORGIVEN } * lattice.spacing()[axis];
+        let mut place = lattice.position(k);
+        place[axis] += match face.side {
+            Side::Min => -reach,
+            Side::Max => reach,
         };
-        meets && beside(other)
-    })
+        if other.holds(place.as_slice())? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Distance of the body's end from the particle, in lengths of the particle.
@@ -189,6 +228,37 @@ mod tests {
         assert_eq!(ends(&[ONE_PHASE]), []);
         let loaded = "boundary=[{face='x-max', traction=['1']}]";
         assert_eq!(ends(&[ONE_PHASE, loaded]), [("x-max".to_owned(), 7)]);
+    }
+
+    /// A square ring of 8 x 8 particles with a hole of 4 x 4: eight rows end at its right side, and four at
+    /// the hole before it.
+    #[test]
+    fn a_hole_has_surfaces_too() {
+        let plane = "grid={min=[0,0], max=[2,2], cells=[4,4]}";
+        let law = "material.law={linear-elastic={youngs_modulus=1, poissons_ratio=0}}";
+        let body =
+            "body=[{min=[0,0], max=[2,2], particles_per_cell=[2,2], inside='max(abs(x-1), abs(y-1)) - 0.5'}]";
+        let loaded = "boundary=[{face='x-max', traction=['1','0']}]";
+        let set = [plane, ONE_PHASE, law, body, loaded].map(String::from);
+        let scene = Scene::from_toml(SCENE, &set).unwrap();
+        let grid = Grid::new(vector![0.0, 0.0], vector![2.0, 2.0], [4, 4]).unwrap();
+        let points = initial(&scene, &grid, 0.0).unwrap();
+        let x = |p: &SurfacePoint<f64>| points.particles.position[p.particle][0];
+        let at = |place: f64| {
+            points
+                .surface
+                .iter()
+                .filter(|p| (x(p) - place).abs() < 1e-12)
+                .count()
+        };
+        assert_eq!((points.surface.len(), at(1.875), at(0.375)), (12, 8, 4));
+        // A plug in the hole leaves none there.
+        let plug = "body=[{min=[0,0], max=[2,2], particles_per_cell=[2,2], inside='max(abs(x-1), abs(y-1)) - \
+        0.5'}, \
+                    {min=[0.5,0.5], max=[1.5,1.5], particles_per_cell=[2,2]}]";
+        let set = [plane, ONE_PHASE, law, plug, loaded].map(String::from);
+        let scene = Scene::from_toml(SCENE, &set).unwrap();
+        assert_eq!(initial(&scene, &grid, 0.0).unwrap().surface.len(), 8);
     }
 
     #[test]

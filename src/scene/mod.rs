@@ -24,6 +24,7 @@ mod text;
 pub use crate::method::{Basis, ReconstructionKind};
 pub use error::SceneError;
 pub use expression::{Expression, ExpressionError, ExpressionProblem};
+pub(crate) use spec::FORGIVEN;
 pub use spec::{
     Against, Body, Boundary, BoundaryKind, GridSpec, Initialise, Law, Material, Method, OutputSpec,
     ParticleOutput, Phases, PoreBoundary, ReferenceSpec, ScalarKind, SpaceLaw, StepSize, StressSpec,

@@ -1,6 +1,6 @@
 //! The parts of a scene, checked and ready to use.
 
-use super::Expression;
+use super::{Expression, ExpressionError};
 use crate::grid::Face;
 use crate::mass::VelocityMass;
 use crate::method::{self, Basis, ReconstructionKind};
@@ -36,6 +36,10 @@ pub struct TimeSpec {
     pub step: StepSize,
     /// End of the run (s), positive.
     pub end: f64,
+    /// Whether the first kick is half a step, so that velocities given at the start are those of time zero
+    /// and the run is of second order in time; otherwise they count as those of half a step before, as in the
+    /// papers.
+    pub half_kick: bool,
 }
 
 /// Floating-point type of the computation.
@@ -299,6 +303,27 @@ pub struct Body {
     pub jitter: f64,
     /// Seed of the random layout.
     pub seed: u64,
+}
+
+/// Part of a length of the particles up to which two ends are one: round-off of coordinates that people
+/// compute.
+pub(crate) const FORGIVEN: f64 = 1e-8;
+
+impl Body {
+    /// Whether the body is at a point (m).
+    ///
+    /// # Errors
+    /// If its shape has no finite value there.
+    pub fn holds(&self, point: &[f64]) -> Result<bool, ExpressionError> {
+        let mut bounds = point.iter().zip(self.min.iter().zip(&self.max));
+        if bounds.any(|(x, (min, max))| x < min || x > max) {
+            return Ok(false);
+        }
+        match &self.inside {
+            Some(inside) => Ok(inside.eval_at(point)? > 0.0),
+            None => Ok(true),
+        }
+    }
 }
 
 /// What holds at a face, for the solid with all in its pores.

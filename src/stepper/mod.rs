@@ -12,7 +12,9 @@
 //!    volume by $\det(1+\Delta\varepsilon)$ at large strain.
 //!
 //! Basis values of all stages are taken at the positions at the start of the step. Velocity lives half a step
-//! early: started from $v(0)$, after $n$ steps it approximates $v(n\Delta t - \Delta t/2)$.
+//! early: started from $v(0)$, after $n$ steps it approximates $v(n\Delta t - \Delta t/2)$, to first order
+//! because the first kick is a whole step, or to second order if that is half a step
+//! ([`Stepper::step_with_kick`]).
 
 mod acceleration;
 mod advance;
@@ -32,6 +34,7 @@ mod ghost;
 mod lanes;
 mod liquid;
 mod mapping;
+mod material_fields;
 mod matrix;
 mod order;
 mod pairs;
@@ -44,6 +47,7 @@ mod window;
 pub use critical::{CriticalStep, Mechanism};
 pub use diagnostics::{Conservation, Diagnostics, Energy};
 pub use forcing::{FaceCondition, Forcing, PoreCondition, SurfacePoint};
+pub use material_fields::MaterialFields;
 pub use simulation::Simulation;
 
 use nalgebra::{SMatrix, SVector};
@@ -303,40 +307,68 @@ where
     /// hold the state in which that was noticed. If the step's size makes no sense, or `forcing` has a condition that the phase does
     /// not know (friction where a liquid flows, a pore pressure where none does): nothing has moved then.
     pub fn step(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
-        check_size(dt)?;
-        forcing.suits_phase(P::FLOWS)?;
-        self.prepare();
-        self.kick(dt, forcing);
+        self.step_with_kick(dt, dt, forcing)
+    }
+
+    /// The same with velocities that gain `kick` (s) times their accelerations, while positions and strains
+    /// go on by `dt` (s).
+    ///
+    /// Velocities live in the middle of steps: the kick from the middle of the step before, of size `before`,
+    /// to that of this one is `(before + dt) / 2`, of second order also where steps change, and `dt / 2` in
+    /// the first step of a run, whose velocities are those of time zero. [`Stepper::step`] takes `dt` always,
+    /// as the papers do: then the velocities given at the start count as those of half a step before.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::step`]; the kick too must be positive and finite.
+    pub fn step_with_kick(&mut self, kick: T, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
+        self.begin_step([kick, dt], forcing)?;
+        self.kick(kick, forcing);
         self.drift(dt)
     }
 
     /// The same, and the energy at the step's start: see [`Energy`].
     ///
     /// # Errors
-    /// As those of [`Stepper::step`].
-    pub fn step_and_measure(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<Energy<T>, StepError> {
-        check_size(dt)?;
-        forcing.suits_phase(P::FLOWS)?;
-        self.prepare();
+    /// As those of [`Stepper::step_with_kick`].
+    pub fn step_and_measure(
+        &mut self,
+        kick: T,
+        dt: T,
+        forcing: &Forcing<T, D>,
+    ) -> Result<Energy<T>, StepError> {
+        self.begin_step([kick, dt], forcing)?;
         let strain = self.strain_energy();
         self.keep_velocities();
-        self.kick(dt, forcing);
+        self.kick(kick, forcing);
         let kinetic = self.kinetic_energy_across();
         self.drift(dt)?;
         Ok(Energy { kinetic, strain })
     }
 
+    /// Refuses sizes and conditions that make no sense, and takes in where the particles are.
+    fn begin_step(&mut self, sizes: [T; 2], forcing: &Forcing<T, D>) -> Result<(), StepError> {
+        for size in sizes {
+            if !size.is_finite() || size <= T::zero() {
+                let value = size.primal();
+                return Err(StepError::StepSize { value });
+            }
+        }
+        forcing.suits_phase(P::FLOWS)?;
+        self.prepare();
+        Ok(())
+    }
+
     /// Velocities of particles and DOFs.
-    fn kick(&mut self, dt: T, forcing: &Forcing<T, D>) {
+    fn kick(&mut self, kick: T, forcing: &Forcing<T, D>) {
         if P::FLOWS {
             self.assemble_both(forcing);
-            self.accelerate_both(dt, forcing);
-            self.update_both_velocities(dt, forcing);
+            self.accelerate_both(kick, forcing);
+            self.update_both_velocities(kick, forcing);
         } else {
             self.begin_balance();
             self.assemble(forcing);
             self.accelerate(forcing);
-            self.update_velocities(dt, forcing);
+            self.update_velocities(kick, forcing);
         }
     }
 
@@ -520,13 +552,6 @@ where
     pub fn bytes_per_particle(&self) -> f64 {
         self.bytes() as f64 / self.particles.len() as f64
     }
-}
-
-fn check_size<T: Scalar>(dt: T) -> Result<(), StepError> {
-    if !dt.is_finite() || dt <= T::zero() {
-        return Err(StepError::StepSize { value: dt.primal() });
-    }
-    Ok(())
 }
 
 /// Refuses a particle whose stress has no meaning to the law.

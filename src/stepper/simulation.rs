@@ -5,7 +5,8 @@ use std::io::{self, Read, Write};
 use nalgebra::SVector;
 
 use super::{
-    Conservation, CriticalStep, Diagnostics, Energy, FaceCondition, Forcing, PoreCondition, Stepper,
+    Conservation, CriticalStep, Diagnostics, Energy, FaceCondition, Forcing, MaterialFields, PoreCondition,
+    Stepper,
 };
 use crate::basis::BasisFamily;
 use crate::error::{RestoreError, StepError};
@@ -25,11 +26,22 @@ pub trait Simulation<const D: usize> {
     /// As there.
     fn step(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError>;
 
+    /// See [`Stepper::step_with_kick`].
+    ///
+    /// # Errors
+    /// As there.
+    fn step_with_kick(&mut self, kick: f64, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError>;
+
     /// See [`Stepper::step_and_measure`].
     ///
     /// # Errors
     /// As there.
-    fn step_and_measure(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<Energy<f64>, StepError>;
+    fn step_and_measure(
+        &mut self,
+        kick: f64,
+        dt: f64,
+        forcing: &Forcing<f64, D>,
+    ) -> Result<Energy<f64>, StepError>;
 
     /// See [`Stepper::set_body_forces`].
     fn set_body_forces(&mut self, force: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>);
@@ -43,6 +55,9 @@ pub trait Simulation<const D: usize> {
 
     /// The liquid of every particle; empty where none flows.
     fn liquid(&self) -> Vec<PoreLiquid<f64, D>>;
+
+    /// See [`Stepper::material_fields`].
+    fn material_fields(&self) -> MaterialFields;
 
     /// See [`Stepper::diagnostics`].
     fn diagnostics(&self) -> Diagnostics<f64>;
@@ -92,9 +107,18 @@ where
         self.step(T::lit(dt), &cast_forcing(forcing))
     }
 
-    fn step_and_measure(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<Energy<f64>, StepError> {
-        let energy = self.step_and_measure(T::lit(dt), &cast_forcing(forcing))?;
+    fn step_and_measure(
+        &mut self,
+        kick: f64,
+        dt: f64,
+        forcing: &Forcing<f64, D>,
+    ) -> Result<Energy<f64>, StepError> {
+        let energy = self.step_and_measure(T::lit(kick), T::lit(dt), &cast_forcing(forcing))?;
         Ok(cast_energy(&energy))
+    }
+
+    fn step_with_kick(&mut self, kick: f64, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError> {
+        self.step_with_kick(T::lit(kick), T::lit(dt), &cast_forcing(forcing))
     }
 
     fn set_body_forces(&mut self, force: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>) {
@@ -129,6 +153,10 @@ where
             }
         })
         .collect()
+    }
+
+    fn material_fields(&self) -> MaterialFields {
+        self.material_fields()
     }
 
     fn diagnostics(&self) -> Diagnostics<f64> {

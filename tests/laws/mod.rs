@@ -10,6 +10,7 @@ mod dual;
 mod elastic;
 mod fluid;
 mod invariance;
+mod off_plane;
 mod rates;
 mod spectral;
 mod start;

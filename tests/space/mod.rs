@@ -5,6 +5,7 @@ mod cantilever;
 mod collapse;
 mod cook;
 mod discs;
+mod files;
 mod footing;
 mod mandel;
 mod manufactured;

@@ -157,7 +157,7 @@ where
     let mut energy = [0.0, f64::NEG_INFINITY, 0.0];
     for n in 0..steps as usize {
         let total = stepper
-            .step_and_measure(dt, &forcing(n as f64 * dt))
+            .step_and_measure(dt, dt, &forcing(n as f64 * dt))
             .unwrap()
             .total();
         if n == 0 {

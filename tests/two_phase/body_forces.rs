@@ -125,7 +125,7 @@ fn conditions_that_a_phase_does_not_know_are_refused_before_anything_moves() {
         side: Side::Max,
     };
     let mut two = block::<1, _, _, _>(Linear, Shepard, soil(Drag::Implicit));
-    let rubs = Forcing::none().with_face(face, FaceCondition::Frictional { coefficient: 0.3 });
+    let rubs = Forcing::none().with_face(face, FaceCondition::frictional(0.3));
     assert_eq!(two.step(DT, &rubs), Err(StepError::FrictionWithFlow { face }));
     let mut one = block::<1, _, _, _>(Linear, Shepard, OnePhase);
     let open = Forcing::none().with_pores(face, PoreCondition::Pressure(0.0));

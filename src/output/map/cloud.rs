@@ -79,7 +79,7 @@ fn is_inside(frame: &Frame, (x, y): Point) -> bool {
 }
 
 fn draw_dots(canvas: &mut Canvas, frame: &Frame, colours: &Scale, samples: &[Sample]) {
-    let radius = (0.55 * spacing(frame, samples)).clamp(0.7, 6.0);
+    let radius = (0.55 * spacing(frame, samples)).clamp(1.2, 6.0);
     let mut groups = vec![Vec::new(); LEVELS];
     for (at, value) in samples {
         let group = level(colours, *value).and_then(|level| groups.get_mut(level));

@@ -26,6 +26,9 @@ pub struct MapPanel {
     pub name: String,
     /// Unit of the values, such as `Pa`; empty for none.
     pub unit: String,
+    /// Names of the axes to the right and upwards; `x` and `y` where they are empty. All maps of a page have
+    /// those of the first.
+    pub axes: [&'static str; 2],
     /// The grid's corner with the lowest coordinates and its opposite (m).
     pub bounds: [[f64; 2]; 2],
     /// Where the particles are (m).
@@ -46,7 +49,8 @@ pub fn draw_maps(title: &str, panels: &[MapPanel]) -> String {
     // The labels of a bar may change with its height: once to know the size of the maps, once for good.
     let rough = Sheet::new(&wanted(&bars(panels, (&x, &y), LEAST_HEIGHT), panels), x, y);
     let bars = bars(panels, (&x, &y), rough.frame(0).height.max(LEAST_HEIGHT));
-    let sheet = Sheet::new(&wanted(&bars, panels), x, y);
+    let names = panels.first().map(|panel| panel.axes).unwrap_or_default();
+    let sheet = Sheet::new(&wanted(&bars, panels), x, y).with_names(names);
     let mut canvas = sheet.canvas(title);
     for (i, (panel, bar)) in panels.iter().zip(&bars).enumerate() {
         panel.draw(&mut canvas, &sheet, i, bar);

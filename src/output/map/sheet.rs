@@ -46,6 +46,8 @@ pub(super) struct Sheet {
     right: f64,
     x: Scale,
     y: Scale,
+    /// Names of the axes.
+    names: [&'static str; 2],
 }
 
 impl Sheet {
@@ -65,7 +67,18 @@ impl Sheet {
             right: wanted.beside_all + EDGE,
             x,
             y,
+            names: ["x", "y"],
         }
+    }
+
+    /// Other names of the axes; an empty one changes nothing.
+    pub fn with_names(mut self, names: [&'static str; 2]) -> Sheet {
+        for (own, name) in self.names.iter_mut().zip(names) {
+            if !name.is_empty() {
+                *own = name;
+            }
+        }
+        self
     }
 
     /// Width of a map and what stands beside it (px).
@@ -120,12 +133,12 @@ impl Sheet {
         frame.draw(canvas, labelled);
         let font = Font::new(LABEL, INK, Anchor::Middle);
         if labelled.x {
-            let name = text::with_unit("x", "m", x_ticks(&self.x, frame.width).exponent);
+            let name = text::with_unit(self.names[0], "m", x_ticks(&self.x, frame.width).exponent);
             let at = (frame.left + 0.5 * frame.width, frame.bottom() + 44.0);
             canvas.text(at, &name, font);
         }
         if labelled.y {
-            let name = text::with_unit("y", "m", y_ticks(&self.y, frame.height).exponent);
+            let name = text::with_unit(self.names[1], "m", y_ticks(&self.y, frame.height).exponent);
             let at = (EDGE + 0.3 * LABEL, frame.top + 0.5 * frame.height);
             canvas.text(at, &name, font.upright());
         }

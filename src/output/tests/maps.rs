@@ -13,6 +13,7 @@ fn panel(bounds: [[f64; 2]; 2], points: Vec<[f64; 2]>, values: Vec<f64>) -> MapP
     MapPanel {
         name: "stress <x> & y".into(),
         unit: "Pa".into(),
+        axes: ["x", "z"],
         bounds,
         points,
         values,

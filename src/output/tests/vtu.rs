@@ -41,6 +41,7 @@ pub(super) fn cloud(particles: usize) -> PointCloud {
             field("stress[Pa]", Symmetric, particles),
             field("gradient[-]", Tensor, particles),
         ],
+        field_data: vec![("TimeValue".into(), 0.1), ("velocity_time[s]".into(), -1.0 / 3.0)],
     }
 }
 

@@ -20,7 +20,7 @@ impl fmt::Debug for Identity<'_> {
         let Scene {
             title: _,
             grid,
-            time: TimeSpec { step, end },
+            time: TimeSpec { step, end, half_kick },
             method,
             material,
             bodies,
@@ -30,7 +30,9 @@ impl fmt::Debug for Identity<'_> {
             output: _,
         } = self.0;
         let mut text = f.debug_struct("scene");
-        text.field("grid", grid).field("time.step", step);
+        text.field("grid", grid)
+            .field("time.step", step)
+            .field("time.half_kick", half_kick);
         if let StepSize::Auto { .. } = step {
             text.field("time.end", end);
         }
@@ -95,7 +97,8 @@ fn place(lines: &[&str], line: usize) -> Place {
     }
     names.reverse();
     Place {
-        key: names.join("."),
+        // Scenes have the constants of the phases beside their number.
+        key: names.join(".").replace("material.phases.", "material."),
         value: value.to_owned(),
     }
 }
@@ -158,9 +161,10 @@ mod tests {
         let cases = [
             ("grid.cells=[8]", "grid.cells", "4", "8"),
             ("time.step=0.05", "time.step", "0.1", "0.05"),
+            ("time.half_kick=true", "time.half_kick", "false", "true"),
             ("method.basis=dual-domain", "method.basis", "Linear", "DualDomain"),
             ("method.scalar=f32", "method.scalar", "F64", "F32"),
-            ("material.density=2", "material.phases.density", "1.0", "2.0"),
+            ("material.density=2", "material.density", "1.0", "2.0"),
             ("body.0.jitter=0.5", "body.jitter", "0.0", "0.5"),
             ("boundary=[{face='x-min', fixed=true}]", "boundary", "[]", ""),
         ];

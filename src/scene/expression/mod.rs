@@ -43,6 +43,11 @@ impl Expression {
         Self::read(format!("{} = {}", shorten(key), quote(text)), text, variables)
     }
 
+    /// Where it was written, and how: `KEY = "TEXT"`.
+    pub(crate) fn origin(&self) -> &str {
+        &self.origin
+    }
+
     fn read(origin: String, text: &str, variables: &[&str]) -> Result<Self, ExpressionError> {
         match compile(text, variables) {
             Ok(program) => Ok(Self {

@@ -2,9 +2,12 @@
 
 use super::grid::{is_blurred, precision_hint};
 use super::material::PhaseCount;
+use super::overlap::overlap;
 use super::{Item, MOST, Section};
 use crate::scene::expression::{COORDINATES, coordinates};
-use crate::scene::{Body, Expression, GridSpec, Initialise, Law, ScalarKind, SceneError, StressSpec};
+use crate::scene::{
+    Body, Expression, FORGIVEN, GridSpec, Initialise, Law, ScalarKind, SceneError, StressSpec,
+};
 
 const KEYS: [&str; 11] = [
     "min",
@@ -40,16 +43,20 @@ pub(super) fn read(
         let section = entry.section(expected)?.allow(&KEYS, &[])?;
         phases.check(&section, &TWO_PHASE_KEYS)?;
         let body = one(&section, grid)?;
-        if let Some(index) = bodies.iter().position(|other| overlap(&body, other)) {
-            let problem = format!("the body overlaps body.{index}; expected bodies that at most touch");
-            return Err(section.required("min", expected)?.conflict(&problem));
-        }
         let per_cell = section.required("particles_per_cell", expected)?;
         particles += check_particles(&per_cell, &body, grid, scalar)?;
         if particles > MOST as f64 {
             let problem =
                 format!("that makes {particles:e} particles; expected at most {MOST} in all bodies");
             return Err(per_cell.conflict(&problem));
+        }
+        // After the number of particles is known to be within reason: they may all be looked at.
+        for (index, other) in bodies.iter().enumerate() {
+            if let Some(much) = overlap(&body, other, grid)? {
+                let problem =
+                    format!("the body overlaps body.{index} {much}; expected bodies that at most touch");
+                return Err(section.required("min", expected)?.conflict(&problem));
+            }
         }
         bodies.push(body);
     }
@@ -164,7 +171,10 @@ fn corners(section: &Section<'_>, grid: &GridSpec) -> Result<(Vec<f64>, Vec<f64>
             x.number("a finite number (m)")
         })
     };
-    let (min, max) = (read(&min_item)?, read(&max_item)?);
+    let (mut min, mut max) = (read(&min_item)?, read(&max_item)?);
+    for corner in [&mut min, &mut max] {
+        snap(corner, grid);
+    }
     let bounds = grid.min.iter().zip(&grid.max);
     for ((low, high), (grid_low, grid_high)) in min.iter().zip(&max).zip(bounds) {
         let grid_range = format!("within the grid, {grid_low:?} to {grid_high:?} m");
@@ -181,6 +191,20 @@ fn corners(section: &Section<'_>, grid: &GridSpec) -> Result<(Vec<f64>, Vec<f64>
     Ok((min, max))
 }
 
+/// Puts coordinates that are those of the grid's ends but for round-off there.
+fn snap(corner: &mut [f64], grid: &GridSpec) {
+    let bounds = grid.min.iter().zip(&grid.max).zip(&grid.cells);
+    for (x, ((&low, &high), &cells)) in corner.iter_mut().zip(bounds) {
+        let cell = (high - low) / cells as f64;
+        if let Some(end) = [low, high]
+            .into_iter()
+            .find(|end| (*x - end).abs() <= FORGIVEN * cell)
+        {
+            *x = end;
+        }
+    }
+}
+
 /// Refuses initial values that are not finite at the body's ends or middle. A hint: particles lie
 /// elsewhere too.
 fn check_values(body: &Body) -> Result<(), SceneError> {
@@ -195,13 +219,6 @@ fn check_values(body: &Body) -> Result<(), SceneError> {
         }
     }
     Ok(())
-}
-
-/// Bodies that share more than a face.
-fn overlap(a: &Body, b: &Body) -> bool {
-    let low = a.min.iter().zip(&b.min).map(|(a, b)| a.max(*b));
-    let high = a.max.iter().zip(&b.max).map(|(a, b)| a.min(*b));
-    low.zip(high).all(|(low, high)| low < high)
 }
 
 /// Number of particles; refuses those that the scalar type cannot tell apart.

@@ -11,6 +11,7 @@ mod load;
 mod material;
 mod method;
 mod output;
+mod overlap;
 mod reference;
 mod section;
 mod time;

@@ -7,14 +7,18 @@ use crate::scene::{SceneError, StepSize, TimeSpec};
 const MOST_STEPS: f64 = 1e12;
 
 pub(super) fn read(section: Section<'_>) -> Result<TimeSpec, SceneError> {
-    let section = section.allow(&["step", "safety", "end"], &[])?;
+    let section = section.allow(&["step", "safety", "end", "half_kick"], &[])?;
     let step = step(&section)?;
     let end_item = section.required("end", "the end of the run, a positive number (s)")?;
     let end = end_item.positive("s")?;
     if let StepSize::Fixed(step) = step {
         check_steps(&end_item, step, end)?;
     }
-    Ok(TimeSpec { step, end })
+    let half_kick = match section.optional("half_kick") {
+        Some(item) => item.flag("true or false (the default): whether the first kick is half a step")?,
+        None => false,
+    };
+    Ok(TimeSpec { step, end, half_kick })
 }
 
 fn step(section: &Section<'_>) -> Result<StepSize, SceneError> {

@@ -84,6 +84,13 @@ impl<T: Scalar, const D: usize> Delassus<T, D> {
         }
     }
 
+    /// Makes all entries larger.
+    pub(super) fn enlarge(&mut self, by: T) {
+        for entry in self.entries.iter_mut().chain(&mut self.diagonal) {
+            *entry *= by;
+        }
+    }
+
     pub(super) fn bytes(&self) -> usize {
         size_of::<SVector<T, D>>() * (self.entries.capacity() + self.diagonal.capacity())
             + size_of::<T>() * self.sums.capacity()

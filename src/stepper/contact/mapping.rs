@@ -22,7 +22,12 @@ use crate::stepper::{Forcing, Stepper};
 /// Share of the walls' greatest relative velocity within which the contact law is to hold.
 const TOLERANCE: f64 = 1e-9;
 /// Corrections after which the impulses are taken as they are.
-const MOST_CORRECTIONS: usize = 40;
+const MOST_CORRECTIONS: usize = 80;
+/// By so much the operator is made larger when impulses were too large: one that is larger than the mapping's own gives
+/// smaller steps, which never overshoot.
+const LARGER: f64 = 2.0;
+/// Share of the energy that impulses take by which it may rise again: bounds of friction move with what presses.
+const RISE: f64 = 1e-3;
 
 /// How far apart along each axis two DOFs may be whose coupling is asked for. The response to an impulse falls by
 /// 0.27 (linear) to 0.54 (cubic) from DOF to DOF of a consistent mass; in space, where their number is squared, fewer are
@@ -49,9 +54,13 @@ where
         self.contact.reached.copy_from_slice(&self.dofs.velocity);
         self.probe_columns(&rest);
         self.contact.impulse.fill(SVector::zeros());
+        self.contact.read_reached();
+        self.contact.begin_corrections();
+        let mut energy = T::zero();
         for _ in 0..MOST_CORRECTIONS {
             let contact = &mut self.contact;
             contact.read_reached();
+            contact.tried.clone_from(&contact.dofs.contacts);
             let mut problem = Problem {
                 dofs: &mut contact.dofs,
                 delassus: &contact.delassus,
@@ -63,6 +72,12 @@ where
             }
             contact.lay_new_impulses();
             self.respond(&rest);
+            let after = self.contact.energy_with(&self.dofs.velocity);
+            if after - energy > energy.abs() * T::lit(RISE) {
+                self.contact.take_back();
+                continue;
+            }
+            energy = after;
             self.take_response(&mut action);
         }
         self.dofs.velocity.copy_from_slice(&self.contact.reached);
@@ -123,6 +138,29 @@ where
 }
 
 impl<T: Scalar, const D: usize> WallContact<T, D> {
+    /// Keeps the velocities that no impulse has changed yet.
+    fn begin_corrections(&mut self) {
+        self.free.clone_from(&self.velocity);
+    }
+
+    /// Change of the kinetic energy by the impulses so far, `R . (v* + v) / 2` relative to the walls, where `responses` are added to
+    /// the velocities reached.
+    fn energy_with(&self, responses: &[SVector<T, D>]) -> T {
+        let half = T::one() / T::lit(2.0);
+        self.dofs.contacts.iter().fold(T::zero(), |sum, contact| {
+            let dof = self.dofs.dofs[contact.place] as usize;
+            let mean = (self.reached[dof] + responses[dof] + self.free[contact.place]) * half;
+            sum + contact.impulse().dot(&(mean - contact.wall.velocity))
+        })
+    }
+
+    /// Takes the last correction back; the next one will be smaller.
+    fn take_back(&mut self) {
+        self.dofs.contacts.clone_from(&self.tried);
+        self.add_up_impulses();
+        self.delassus.enlarge(T::lit(LARGER));
+    }
+
     fn read_reached(&mut self) {
         let Self {
             velocity,

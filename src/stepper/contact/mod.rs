@@ -35,7 +35,7 @@ use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use delassus::Delassus;
-use wall::{Wall, WallDofs};
+use wall::{Contact, Wall, WallDofs};
 
 /// Distance of a particle's surface from a wall, in cells, below which they touch.
 const CLOSED: f64 = 0.02;
@@ -58,6 +58,9 @@ pub(super) struct WallContact<T, const D: usize> {
     /// Of all DOFs and particles, where the mapping is no particle sum: velocities so far, and changes of velocity.
     reached: Vec<SVector<T, D>>,
     kicks: Vec<SVector<T, D>>,
+    /// Of the DOFs on walls: velocities without any impulse; and the contacts before a correction.
+    free: Vec<SVector<T, D>>,
+    tried: Vec<Contact<T, D>>,
 }
 
 /// What the walls did to the particles in a step.
@@ -94,6 +97,8 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
             gain: Vec::new(),
             reached: Vec::new(),
             kicks: Vec::new(),
+            free: Vec::new(),
+            tried: Vec::new(),
         }
     }
 
@@ -110,9 +115,11 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
             &self.gain,
             &self.reached,
             &self.kicks,
+            &self.free,
         ];
         size_of::<SVector<T, D>>() * vectors.map(Vec::capacity).iter().sum::<usize>()
             + size_of::<u32>() * (self.near.capacity() + self.closed.capacity())
+            + size_of::<Contact<T, D>>() * self.tried.capacity()
             + self.dofs.bytes()
             + self.delassus.bytes()
     }
@@ -213,6 +220,8 @@ where
         if !by_sums {
             contact.reached = vec![SVector::zeros(); dofs];
             contact.kicks = vec![SVector::zeros(); self.particles.len()];
+            contact.free = vec![SVector::zeros(); places];
+            contact.tried.clone_from(&contact.dofs.contacts);
         }
     }
 

@@ -125,16 +125,20 @@ fn two_phases_are_resumed() {
     }
 }
 
-/// The body force of the driver is set anew in every step; the step is found.
+/// The body force of the driver is set anew in every step; the step is found. The first kick may be half a one.
 #[test]
 fn a_driven_run_with_a_step_of_its_own_is_resumed() {
-    let set = [
-        "time={step='auto', end=3e-3}",
-        "output={particles='none', checkpoint_every=7}",
-    ];
-    let scene = scene(Scene::builtin("manufactured").unwrap(), &set);
-    let (_scratch, path, whole) = with_checkpoint::<2>("resume-driven", &scene);
-    // Not at the end, where nothing would be left to do.
-    assert_ne!(whole.summary.steps % 7, 0);
-    assert_same(&resume::<2>(&scene, &path).unwrap(), &whole, "driven");
+    for half_kick in ["false", "true"] {
+        let half_kick = format!("time.half_kick={half_kick}");
+        let set = [
+            "time={step='auto', end=3e-3}",
+            "output={particles='none', checkpoint_every=7}",
+            &half_kick,
+        ];
+        let scene = scene(Scene::builtin("manufactured").unwrap(), &set);
+        let (_scratch, path, whole) = with_checkpoint::<2>("resume-driven", &scene);
+        // Not at the end, where nothing would be left to do.
+        assert_ne!(whole.summary.steps % 7, 0);
+        assert_same(&resume::<2>(&scene, &path).unwrap(), &whole, &half_kick);
+    }
 }

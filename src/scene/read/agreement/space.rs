@@ -50,25 +50,13 @@ pub(super) fn vortex(scene: &Scene, inner: f64, outer: f64) -> Result<(), SceneE
         for (x, direction) in point.iter_mut().zip([cos, sin]) {
             *x += radius * direction;
         }
-        if !holds(body, &point)? {
+        if !body.holds(&point)? {
             return refuse(&format!(
                 "it needs a body that holds the ring about the middle of the grid; at {point:.3?} there is none"
             ));
         }
     }
     Ok(())
-}
-
-/// Whether the body is at a point.
-fn holds(body: &Body, point: &[f64]) -> Result<bool, SceneError> {
-    let mut bounds = point.iter().zip(body.min.iter().zip(&body.max));
-    if bounds.any(|(x, (min, max))| x < min || x > max) {
-        return Ok(false);
-    }
-    match &body.inside {
-        Some(inside) => Ok(inside.eval_at(point)? > 0.0),
-        None => Ok(true),
-    }
 }
 
 pub(super) fn manufactured(scene: &Scene, amplitude: f64) -> Result<(), SceneError> {
