@@ -7,6 +7,9 @@ use crate::scalar::Scalar;
 const BLOCK: usize = 128;
 /// Rows in a span that threads share.
 const SPAN: usize = 32 * BLOCK;
+/// Fewest entries of which another thread is given rows: so many take a thread a tenth of a millisecond and more. Of fewer, sharing
+/// brought nothing, and other threads had to be woken for each of the many products of a solution.
+const MANY: usize = 1 << 20;
 
 /// A symmetric matrix of order `n` whose entry `(i, j)` may differ from zero only if the DOFs `i` and `j` of a lattice are
 /// neighbours within a given reach along every axis. The lower half is stored diagonal by diagonal: of 25 diagonals in the
@@ -86,7 +89,7 @@ impl<T: Scalar> Lattice<T> {
 
     /// `y = M x`.
     pub fn multiply(&self, x: &[T], y: &mut [T]) {
-        let parallel = self.order > SPAN && many_threads();
+        let parallel = self.entries.len() >= MANY && many_threads();
         each_span(parallel, SPAN, y, &|first, y| {
             for (k, y) in y.chunks_mut(BLOCK).enumerate() {
                 self.multiply_block(first + k * BLOCK, x, y);

@@ -20,7 +20,7 @@ use crate::scalar::Scalar;
 ///
 /// The hooks below [`Phase::update`] are asked only of a phase that [`Phase::FLOWS`]; masses and forces of the liquid are
 /// those of [`mod@crate::stepper`]'s second balance of momentum.
-pub trait Phase<T: Scalar, const D: usize>: Sync {
+pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
     /// Whether there is anything but the solid.
     const COUPLED: bool;
 

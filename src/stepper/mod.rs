@@ -53,6 +53,7 @@ use crate::error::{SetupError, StepError};
 use crate::grid::{Face, Grid};
 use crate::law::ConstitutiveLaw;
 use crate::mass::VelocityMass;
+use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Crossed, Cut, Reconstruction};
@@ -290,6 +291,21 @@ where
         if !dt.is_finite() || dt <= T::zero() {
             return Err(StepError::StepSize { value: dt.primal() });
         }
+        let mut outcome = Ok(());
+        within_pool(self.is_worth_sending(), &mut || {
+            outcome = self.step_here(dt, forcing)
+        });
+        outcome
+    }
+
+    /// Whether a step is worth being sent to a pool of threads.
+    fn is_worth_sending(&self) -> bool {
+        let cells = if R::PLAIN { 0 } else { self.bins.occupied().len() };
+        are_many::<D>(self.particles.len(), PARTICLES) || are_many::<D>(cells, CELLS)
+    }
+
+    /// The step on this thread, which others of its pool may help.
+    fn step_here(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
         self.prepare();
         if P::FLOWS {
             self.assemble_both(forcing);
