@@ -115,3 +115,16 @@ fn use_threads(threads: Option<u32>) -> Result<(), Failure> {
     pool.build_global()
         .map_err(|error| Failure::Input(format!("--threads {count}: {error}")))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Else each pass of a step would be sent to other threads, while this one sleeps.
+    #[test]
+    fn the_thread_of_the_command_is_one_of_those_that_share_a_step() {
+        use_threads(Some(2)).unwrap();
+        assert_eq!(rayon::current_thread_index(), Some(0));
+        assert_eq!(rayon::current_num_threads(), 2);
+    }
+}

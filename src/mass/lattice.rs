@@ -253,4 +253,29 @@ mod tests {
         assert_eq!(Lattice::<f64>::zeros([100, 50], 2).offsets.len(), 13);
         assert_eq!(Lattice::<f64>::zeros([30, 20, 10], 2).offsets.len(), 63);
     }
+
+    #[cfg(feature = "rayon")]
+    #[test]
+    fn threads_multiply_to_the_bit_as_one_alone() {
+        let mut lattice = Lattice::<f64>::zeros([400, 210], 2);
+        assert!(lattice.entries.len() >= MANY && lattice.order() > 2 * SPAN);
+        for (k, entry) in lattice.entries.iter_mut().enumerate() {
+            *entry = 1.0 / (1 + k % 97) as f64;
+        }
+        let x: Vec<f64> = (0..lattice.order()).map(|i| (i as f64).sin()).collect();
+        let product = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            let mut y = vec![0.0; x.len()];
+            pool.install(|| lattice.multiply(&x, &mut y));
+            y
+        };
+        let alone = product(1);
+        assert!(alone.iter().all(|y| y.is_finite()));
+        for threads in [2, 3] {
+            assert!(product(threads) == alone);
+        }
+    }
 }
