@@ -2,9 +2,10 @@
 //!
 //! `cargo bench --bench command [FILTER ...]`: only the cases whose names contain every FILTER.
 //!
-//! Each measurement is a run of the built command. One thread and two take turns, so that a machine that is busy for a while slows both;
-//! the median and the best time of its step loop per particle and step are printed. Two threads need two processors: on a busy machine
-//! the best times alone say something, and two cores that share no cache are slower together than two that do.
+//! Each measurement is a run of the built command. One thread and two take turns, so that a machine that is busy for
+//! a while slows both; the median and the best time of its step loop per particle and step are printed. Two threads
+//! need two processors: on a busy machine the best times alone say something, and two cores that share no cache are
+//! slower together than two that do.
 
 use std::error::Error;
 use std::path::Path;
@@ -36,7 +37,8 @@ impl Case {
         (self.cells * self.per_cell).pow(self.axes as u32)
     }
 
-    /// As TOML. Nothing rests for long: tiny numbers would be denormal and slow. A wave takes ten steps through a cell.
+    /// As TOML. Nothing rests for long: tiny numbers would be denormal and slow. A wave takes ten steps through a
+    /// cell.
     fn scene(&self) -> String {
         let each = |entry: &str| vec![entry; self.axes].join(", ");
         let [cells, per_cell] = [self.cells, self.per_cell].map(|n| each(&n.to_string()));
@@ -59,7 +61,8 @@ impl Case {
              [method]\nbasis = \"{basis}\"\nreconstruction = \"{reconstruction}\"\n\
              [material]\nstrain = \"large\"\ndensity = 1.0\n\
              law.linear-elastic = {{ youngs_modulus = 0.9, poissons_ratio = 0.2 }}\n\
-             [[body]]\nmin = [{zeros}]\nmax = [{ones}]\nparticles_per_cell = [{per_cell}]\nvelocity = [{velocity}]\n\
+             [[body]]\nmin = [{zeros}]\nmax = [{ones}]\n\
+             particles_per_cell = [{per_cell}]\nvelocity = [{velocity}]\n\
              {walls}",
             zeros = each("0.0"),
             ones = each("1.0"),
@@ -76,7 +79,9 @@ impl Case {
         std::fs::write(&scene, self.scene())?;
         let output = Command::new(env!("CARGO_BIN_EXE_materialpoint"))
             .arg("run")
-            .args([&scene, "--out".as_ref(), &folder])
+            .arg(&scene)
+            .arg("--out")
+            .arg(&folder)
             .args(["--json", "--quiet", "--threads", &threads.to_string()])
             .output()?;
         if !output.status.success() {

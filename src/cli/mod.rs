@@ -105,8 +105,8 @@ pub(crate) fn execute(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Sets the number of threads that share the work of a step; zero is rayon's word for all processors. This thread is one of them: else it
-/// would have to send all that is to be shared to the others, and sleep meanwhile.
+/// Sets the number of threads that share the work of a step; zero is rayon's word for all processors. This thread is
+/// one of them: else it would have to send all that is to be shared to the others, and sleep meanwhile.
 fn use_threads(threads: Option<u32>) -> Result<(), Failure> {
     let count = threads.unwrap_or(0) as usize;
     let pool = rayon::ThreadPoolBuilder::new()

@@ -7,8 +7,8 @@ use crate::scalar::Scalar;
 const BLOCK: usize = 128;
 /// Rows in a span that threads share.
 const SPAN: usize = 32 * BLOCK;
-/// Fewest entries of which another thread is given rows: so many take a thread a tenth of a millisecond and more. Of fewer, sharing
-/// brought nothing, and other threads had to be woken for each of the many products of a solution.
+/// Fewest entries of which another thread is given rows: so many take a thread a tenth of a millisecond and more. Of
+/// fewer, sharing brought nothing, and other threads had to be woken for each of the many products of a solution.
 const MANY: usize = 1 << 20;
 
 /// A symmetric matrix of order `n` whose entry `(i, j)` may differ from zero only if the DOFs `i` and `j` of a lattice are

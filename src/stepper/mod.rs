@@ -284,8 +284,8 @@ where
 
     /// One step of size `dt` (s) under `forcing`, the loads and boundary values of this step.
     ///
-    /// With the feature `rayon` threads share a step of many particles or cells: those of the caller's pool, or of the global one, to which a
-    /// caller that belongs to none sends the whole step. Any number of them gives the bits of one.
+    /// With the feature `rayon` threads share a step of many particles or cells: those of the caller's pool, or of the
+    /// global one, to which a caller that belongs to none sends the whole step. Any number of them gives the bits of one.
     ///
     /// # Errors
     /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the law. The particles then hold the
