@@ -44,7 +44,7 @@ pub enum FixedPoints {
     message = "`{Self}` is no basis family for scalar `{T}` in `{D}` dimensions",
     note = "families: Linear, DualDomain, BSpline<1>, BSpline<2>, BSpline<3>, or your own `impl BasisFamily`"
 )]
-pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Sync {
+pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
     /// Whether [`BasisFamily::take_in`] does anything.
     const TAKES_IN_CELLS: bool = false;
 

@@ -105,10 +105,26 @@ pub(crate) fn execute(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Sets the number of threads that share the work of a step; zero is rayon's word for all processors.
+/// Sets the number of threads that share the work of a step; zero is rayon's word for all processors. This thread is
+/// one of them: else it would have to send all that is to be shared to the others, and sleep meanwhile.
 fn use_threads(threads: Option<u32>) -> Result<(), Failure> {
     let count = threads.unwrap_or(0) as usize;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(count)
+        .use_current_thread();
     pool.build_global()
         .map_err(|error| Failure::Input(format!("--threads {count}: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Else each pass of a step would be sent to other threads, while this one sleeps.
+    #[test]
+    fn the_thread_of_the_command_is_one_of_those_that_share_a_step() {
+        use_threads(Some(2)).unwrap();
+        assert_eq!(rayon::current_thread_index(), Some(0));
+        assert_eq!(rayon::current_num_threads(), 2);
+    }
 }

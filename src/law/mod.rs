@@ -41,7 +41,7 @@ use crate::scalar::Scalar;
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no constitutive law for scalar `{T}` in `{D}` dimensions"
 )]
-pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Sync {
+pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Send + Sync {
     /// What the law remembers of each particle besides its stress; `()` for an elastic rate law.
     /// `Default` is the undeformed state.
     type State: Copy + Default + Send + Sync;

@@ -7,6 +7,9 @@ use crate::scalar::Scalar;
 const BLOCK: usize = 128;
 /// Rows in a span that threads share.
 const SPAN: usize = 32 * BLOCK;
+/// Fewest entries of which another thread is given rows: so many take a thread a tenth of a millisecond and more. Of
+/// fewer, sharing brought nothing, and other threads had to be woken for each of the many products of a solution.
+const MANY: usize = 1 << 20;
 
 /// A symmetric matrix of order `n` whose entry `(i, j)` may differ from zero only if the DOFs `i` and `j` of a lattice are
 /// neighbours within a given reach along every axis. The lower half is stored diagonal by diagonal: of 25 diagonals in the
@@ -86,7 +89,7 @@ impl<T: Scalar> Lattice<T> {
 
     /// `y = M x`.
     pub fn multiply(&self, x: &[T], y: &mut [T]) {
-        let parallel = self.order > SPAN && many_threads();
+        let parallel = self.entries.len() >= MANY && many_threads();
         each_span(parallel, SPAN, y, &|first, y| {
             for (k, y) in y.chunks_mut(BLOCK).enumerate() {
                 self.multiply_block(first + k * BLOCK, x, y);
@@ -249,5 +252,30 @@ mod tests {
     fn in_the_plane_thirteen_diagonals_hold_a_reach_of_two() {
         assert_eq!(Lattice::<f64>::zeros([100, 50], 2).offsets.len(), 13);
         assert_eq!(Lattice::<f64>::zeros([30, 20, 10], 2).offsets.len(), 63);
+    }
+
+    #[cfg(feature = "rayon")]
+    #[test]
+    fn threads_multiply_to_the_bit_as_one_alone() {
+        let mut lattice = Lattice::<f64>::zeros([400, 210], 2);
+        assert!(lattice.entries.len() >= MANY && lattice.order() > 2 * SPAN);
+        for (k, entry) in lattice.entries.iter_mut().enumerate() {
+            *entry = 1.0 / (1 + k % 97) as f64;
+        }
+        let x: Vec<f64> = (0..lattice.order()).map(|i| (i as f64).sin()).collect();
+        let product = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            let mut y = vec![0.0; x.len()];
+            pool.install(|| lattice.multiply(&x, &mut y));
+            y
+        };
+        let alone = product(1);
+        assert!(alone.iter().all(|y| y.is_finite()));
+        for threads in [2, 3] {
+            assert!(product(threads) == alone);
+        }
     }
 }

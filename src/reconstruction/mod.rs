@@ -182,7 +182,7 @@ pub struct Crossed<T> {
     message = "`{Self}` does not reconstruct scalar `{T}` in `{D}` dimensions",
     note = "CubicSpline is global and exists in 1-D only; Taylor<T, D, NB> takes NB = 3, 6, 10 for D = 1, 2, 3"
 )]
-pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
+pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     /// Whether [`Reconstruction::integrate`] streams the particles.
     const FIELDS_AT_PARTICLES: bool;
 

@@ -447,7 +447,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         let empty = CellFits::empty(cloud);
         self.cells.resize(occupied.len(), empty);
         let tolerance = self.tolerance;
-        let parallel = occupied.len() > parallel::CELLS && parallel::many_threads();
+        let parallel = parallel::worth_sharing::<D>(occupied.len(), parallel::CELLS);
         each_span(
             parallel,
             parallel::CELLS,

@@ -10,7 +10,7 @@ use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::grid::{Cell, Grid};
 use crate::law::ConstitutiveLaw;
-use crate::parallel::{PARTICLES, PerSpan, each_span, many_threads};
+use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
 use crate::particles::{Movable, Movables};
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
@@ -30,7 +30,7 @@ where
     pub(super) fn advance(&mut self, dt: T) -> Result<(), StepError> {
         let (basis, grid, law, phase) = (&self.basis, &self.grid, &self.law, &self.phase);
         let velocity = &self.dofs.velocity[..];
-        let parallel = self.particles.len() > PARTICLES && many_threads();
+        let parallel = worth_sharing::<D>(self.particles.len(), PARTICLES);
         let work = (
             self.particles.movable(),
             self.bins.cells_mut(),

@@ -50,7 +50,7 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D
             vectors,
             ..
         } = self.spans;
-        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
+        let (span, parallel) = share::<D>(spans, occupied.len(), lengths[1]);
         let work = (
             occupied,
             Windows::new(spans, scalars, lumped, 1),
@@ -91,7 +91,7 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D
             vectors,
             ..
         } = self.spans;
-        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
+        let (span, parallel) = share::<D>(spans, occupied.len(), lengths[1]);
         let work = (
             occupied,
             Windows::new(spans, matrices, rows, half_band + 1),

@@ -65,6 +65,13 @@ pub struct Energy<T> {
 }
 
 impl<T: Scalar> Energy<T> {
+    pub(super) fn none() -> Self {
+        Self {
+            kinetic: T::zero(),
+            strain: T::zero(),
+        }
+    }
+
     /// Kinetic plus strain energy.
     pub fn total(&self) -> T {
         self.kinetic + self.strain

@@ -57,7 +57,7 @@ where
             vectors,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, particles.len(), lengths[0]);
+        let (span, parallel) = share::<D>(spans, particles.len(), lengths[0]);
         let work = (
             &particles.position[..],
             self.bins.cells(),
@@ -161,7 +161,7 @@ where
             scalars,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, particles.len(), lengths[0]);
+        let (span, parallel) = share::<D>(spans, particles.len(), lengths[0]);
         let work = (
             &particles.position[..],
             self.bins.cells(),
@@ -286,7 +286,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> A
             reduced,
             ..
         } = self.spans;
-        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
+        let (span, parallel) = share::<D>(spans, occupied.len(), lengths[1]);
         reduced.fill(0);
         let work = (
             occupied,

@@ -200,7 +200,7 @@ where
             vectors,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, occupied.len(), lengths[1]);
+        let (span, parallel) = share::<D>(spans, occupied.len(), lengths[1]);
         let work = (
             occupied,
             Windows::new(spans, matrices, mass, width),

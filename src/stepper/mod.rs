@@ -58,6 +58,7 @@ use crate::error::{SetupError, StepError};
 use crate::grid::{Face, Grid};
 use crate::law::ConstitutiveLaw;
 use crate::mass::VelocityMass;
+use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Crossed, Cut, Reconstruction};
@@ -302,6 +303,9 @@ where
 
     /// One step of size `dt` (s) under `forcing`, the loads and boundary values of this step.
     ///
+    /// With the feature `rayon` threads share a step of many particles or cells: those of the caller's pool, or of the
+    /// global one, to which a caller that belongs to none sends the whole step. Any number of them gives the bits of one.
+    ///
     /// # Errors
     /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the law: the particles then
     /// hold the state in which that was noticed. If the step's size makes no sense, or `forcing` has a condition that the phase does
@@ -321,9 +325,7 @@ where
     /// # Errors
     /// Those of [`Stepper::step`]; the kick too must be positive and finite.
     pub fn step_with_kick(&mut self, kick: T, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
-        self.begin_step([kick, dt], forcing)?;
-        self.kick(kick, forcing);
-        self.drift(dt)
+        self.send_step([kick, dt], forcing, false).map(|_| ())
     }
 
     /// The same, and the energy at the step's start: see [`Energy`].
@@ -336,26 +338,55 @@ where
         dt: T,
         forcing: &Forcing<T, D>,
     ) -> Result<Energy<T>, StepError> {
-        self.begin_step([kick, dt], forcing)?;
-        let strain = self.strain_energy();
-        self.keep_velocities();
-        self.kick(kick, forcing);
-        let kinetic = self.kinetic_energy_across();
-        self.drift(dt)?;
-        Ok(Energy { kinetic, strain })
+        self.send_step([kick, dt], forcing, true)
     }
 
-    /// Refuses sizes and conditions that make no sense, and takes in where the particles are.
-    fn begin_step(&mut self, sizes: [T; 2], forcing: &Forcing<T, D>) -> Result<(), StepError> {
-        for size in sizes {
+    /// Takes a step in the pool of threads if it is worth that; the energy means nothing unless it is to be measured.
+    fn send_step(
+        &mut self,
+        [kick, dt]: [T; 2],
+        forcing: &Forcing<T, D>,
+        measure: bool,
+    ) -> Result<Energy<T>, StepError> {
+        for size in [dt, kick] {
             if !size.is_finite() || size <= T::zero() {
                 let value = size.primal();
                 return Err(StepError::StepSize { value });
             }
         }
         forcing.suits_phase(P::FLOWS)?;
+        let mut outcome = Ok(Energy::none());
+        within_pool(self.is_worth_sending(), &mut || {
+            outcome = self.step_here([kick, dt], forcing, measure);
+        });
+        outcome
+    }
+
+    /// Whether a step is worth being sent to a pool of threads.
+    fn is_worth_sending(&self) -> bool {
+        let cells = if R::PLAIN { 0 } else { self.bins.occupied().len() };
+        are_many::<D>(self.particles.len(), PARTICLES) || are_many::<D>(cells, CELLS)
+    }
+
+    /// The step on this thread, which others of its pool may help.
+    fn step_here(
+        &mut self,
+        [kick, dt]: [T; 2],
+        forcing: &Forcing<T, D>,
+        measure: bool,
+    ) -> Result<Energy<T>, StepError> {
+        let mut energy = Energy::none();
         self.prepare();
-        Ok(())
+        if measure {
+            energy.strain = self.strain_energy();
+            self.keep_velocities();
+        }
+        self.kick(kick, forcing);
+        if measure {
+            energy.kinetic = self.kinetic_energy_across();
+        }
+        self.drift(dt)?;
+        Ok(energy)
     }
 
     /// Velocities of particles and DOFs.

@@ -9,7 +9,7 @@ use super::lanes;
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::grid::Grid;
-use crate::parallel::{CELLS, PARTICLES, SpanWindow, fit, many_threads};
+use crate::parallel::{CELLS, PARTICLES, SpanWindow, fit, worth_sharing};
 use crate::particles::Bins;
 use crate::scalar::Scalar;
 
@@ -204,10 +204,10 @@ fn reserve<Q>(values: &mut Vec<Q>, count: usize) {
 const MOST_OVERLAP: usize = 2;
 
 /// Length of a span of `items` items whose windows are `spans`, and whether threads should share them.
-pub(super) fn share(spans: &[SpanWindow], items: usize, length: usize) -> (usize, bool) {
+pub(super) fn share<const D: usize>(spans: &[SpanWindow], items: usize, length: usize) -> (usize, bool) {
     match spans.len() {
         0 | 1 => (items.max(1), false),
-        _ => (length, many_threads()),
+        _ => (length, worth_sharing::<D>(items, length)),
     }
 }
 

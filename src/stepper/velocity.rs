@@ -13,7 +13,7 @@ use super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::law::ConstitutiveLaw;
 use crate::mass::VelocityMass;
-use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, many_threads};
+use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, worth_sharing};
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -51,7 +51,7 @@ where
         let (basis, grid) = (&self.basis, &self.grid);
         let acceleration = &self.dofs.force[..];
         let particles = &mut self.particles;
-        let parallel = particles.len() > PARTICLES && many_threads();
+        let parallel = worth_sharing::<D>(particles.len(), PARTICLES);
         let work = (
             &particles.position[..],
             &mut particles.velocity[..],
@@ -111,7 +111,7 @@ where
             sums,
             ..
         } = &mut self.spans;
-        let (span, parallel) = share(spans, particles.len(), lengths[0]);
+        let (span, parallel) = share::<D>(spans, particles.len(), lengths[0]);
         sums.fill(Sums::zero());
         let work = (
             &particles.position[..],

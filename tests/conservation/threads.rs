@@ -2,6 +2,8 @@
 //!
 //! Particles enough for many spans, in order along the bar and shuffled (then one span serves), crossing cells as they move.
 
+mod entering;
+
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};

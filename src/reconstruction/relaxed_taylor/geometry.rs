@@ -6,14 +6,14 @@ use super::cells::RelaxedCell;
 use super::four::{FourFits, KeptProducts, keep_gram};
 use super::{GROUPS, RelaxedTaylor};
 use crate::lanes::{LANES, Lanes, with_lanes_of};
-use crate::parallel::{Rows, each_span, many_threads};
+use crate::parallel::{Rows, each_span, worth_sharing};
 use crate::reconstruction::Cloud;
 use crate::scalar::Scalar;
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     /// Whether threads should share the groups of four cells.
     pub(super) fn share_groups(&self) -> bool {
-        self.cells.len() > GROUPS * LANES && many_threads()
+        worth_sharing::<D>(self.cells.len(), GROUPS * LANES)
     }
 
     /// Places of the cells of a group.

@@ -6,7 +6,7 @@ use super::make_room;
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::lanes::{LANES, Lanes, with_lanes_of};
-use crate::parallel::{PARTICLES, Sliced, each_span, many_threads};
+use crate::parallel::{PARTICLES, Sliced, each_span, worth_sharing};
 use crate::reconstruction::Cloud;
 use crate::scalar::Scalar;
 use crate::taylor::{Rights, taylor_lanes};
@@ -67,7 +67,7 @@ impl<T: Scalar> Pulls<T> {
         cloud: &Cloud<'_, T, D>,
         values: &mut [Q],
     ) {
-        let parallel = values.len() > PARTICLES && many_threads();
+        let parallel = worth_sharing::<D>(values.len(), PARTICLES);
         let work = (values, cloud.positions, cloud.bins.cells());
         each_span(parallel, PARTICLES, work, &|_, (values, positions, cells)| {
             with_lanes_of!(T, self.move_in[_, D, NB](cloud, values, positions, cells));
