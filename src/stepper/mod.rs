@@ -116,6 +116,8 @@ where
     motion: Vec<[SVector<T, D>; 2]>,
     /// Of no DOF but for a liquid that flows with the particles' consistent matrices.
     joint: liquid::Joint<T, D>,
+    /// What surfaces demand that the liquid does not pass.
+    seal: liquid::Seal<T>,
     spans: Spans<T, D>,
     /// Whether a particle came near the border of the grid's window.
     strayed: bool,
@@ -198,6 +200,12 @@ where
         } else {
             0
         };
+        let seal = {
+            let points = if P::FLOWS { surface_count } else { 0 };
+            let along = basis.degree() + 1;
+            let beside = along.pow(D as u32 - 1);
+            liquid::Seal::new(points, along * beside, beside)
+        };
         let spans = Spans::new(particles.len());
         let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
         let mut stepper = Self {
@@ -217,6 +225,7 @@ where
             sums: Vec::new(),
             motion: Vec::new(),
             joint: liquid::Joint::none(),
+            seal,
             spans,
             strayed: false,
             crossed: Vec::with_capacity(crossed_count),
@@ -470,6 +479,7 @@ where
             + size_of::<SMatrix<T, D, D>>() * self.relaxed.capacity()
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()
             + self.joint.bytes()
+            + self.seal.bytes()
             + both * self.drag.len()
     }
 

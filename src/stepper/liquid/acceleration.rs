@@ -51,7 +51,7 @@ where
             liquid.force[i] = a_w;
         }
         self.hold_both(dt, forcing);
-        self.seal_surfaces(dt, forcing);
+        self.seal_accelerations(dt);
     }
 
     /// Told accelerations at held DOFs. Where the liquid passes a held face it still feels the solid's drag, now that of a

@@ -28,6 +28,7 @@ where
     /// the even part of what loads the surfaces, and the rest of that load.
     pub(in super::super) fn assemble_both(&mut self, forcing: &Forcing<T, D>) {
         let even = self.even_load(forcing);
+        self.find_seals(forcing);
         if R::PLAIN {
             self.sum_everything(&even);
         } else {

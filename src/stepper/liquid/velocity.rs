@@ -224,6 +224,11 @@ where
             let velocities = &mut dofs.velocity;
             walls.for_each_held(|dof, axis, velocity, _| velocities[dof][axis] = velocity);
         }
+        if R::PARTICLE_MATRIX {
+            self.seal_mapped_jointly();
+        } else {
+            self.seal_velocities();
+        }
     }
 }
 
