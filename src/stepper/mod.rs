@@ -282,7 +282,7 @@ where
             return;
         }
         if P::FLOWS {
-            self.map_both_before(&Forcing::none());
+            self.map_both_before(T::zero(), &Forcing::none());
             self.liquid.velocity.fill(SVector::zeros());
         } else {
             self.map_momentum();
@@ -301,7 +301,7 @@ where
         }
         self.prepare();
         if P::FLOWS {
-            self.assemble_both(forcing);
+            self.assemble_both(dt, forcing);
             self.accelerate_both(dt, forcing);
             self.update_both_velocities(dt, forcing);
         } else {

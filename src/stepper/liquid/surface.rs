@@ -159,34 +159,30 @@ where
     }
 
     /// Takes from the accelerations what would let liquid pass a sealed surface. The pressure there acts on the liquid alone, that
-    /// is, its opposite on the solid; `dt` is that of the drag's part in the answer, zero where it is felt at the step's start.
+    /// is, its opposite on the solid; the drag that is felt at the step's end resists.
     pub(super) fn seal_accelerations(&mut self, dt: T) {
+        let resistance = self.resistance(dt);
         let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
-        let dt = match self.phase.drag_treatment() {
-            Drag::Implicit => dt,
-            Drag::Explicit => T::zero(),
-        };
         let masses = [&solid.mass[..], &liquid.mass];
-        let drag = (&self.drag[..], dt * self.phase.porosity());
-        seal(
-            &mut self.seal,
-            masses,
-            drag,
-            [&mut solid.force, &mut liquid.force],
-        );
+        let motion = [&mut solid.force[..], &mut liquid.force];
+        seal(&mut self.seal, masses, (&self.drag, resistance), motion);
     }
 
-    /// Takes from the mapped velocities the slip through sealed surfaces, as [`Stepper::seal_accelerations`].
-    pub(super) fn seal_velocities(&mut self) {
+    /// Takes from the mapped velocities the slip through sealed surfaces, by the same projection.
+    pub(super) fn seal_velocities(&mut self, dt: T) {
+        let resistance = self.resistance(dt);
         let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
         let masses = [&solid.mass[..], &liquid.mass];
-        let drag = (&self.drag[..], T::zero());
-        seal(
-            &mut self.seal,
-            masses,
-            drag,
-            [&mut solid.velocity, &mut liquid.velocity],
-        );
+        let motion = [&mut solid.velocity[..], &mut liquid.velocity];
+        seal(&mut self.seal, masses, (&self.drag, resistance), motion);
+    }
+
+    /// What makes mass of a DOF's drag.
+    fn resistance(&self, dt: T) -> T {
+        match self.phase.drag_treatment() {
+            Drag::Implicit => dt * self.phase.porosity(),
+            Drag::Explicit => T::zero(),
+        }
     }
 }
 
