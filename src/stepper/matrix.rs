@@ -1,5 +1,7 @@
 //! The consistent mass matrix.
 
+use nalgebra::SVector;
+
 use super::Dofs;
 use super::acceleration::Walls;
 use crate::basis::BasisFamily;
@@ -113,6 +115,13 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
             self.gradients.prepare(&self.lattice, &self.penalty);
         } else if let Some(least) = weak {
             self.band.lump_weak(least);
+        }
+    }
+
+    /// Replaces `right`, which must be zero at held DOFs, by the solution with the factors of the last velocities; of one dimension.
+    pub(super) fn solve_again(&self, right: &mut [SVector<T, D>]) {
+        for axis in 0..D {
+            self.factor.solve_again(right, axis);
         }
     }
 

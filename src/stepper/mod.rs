@@ -122,6 +122,8 @@ where
     motion: Vec<[SVector<T, D>; 2]>,
     /// Of no DOF but for a liquid that flows with the particles' consistent matrices.
     joint: liquid::Joint<T, D>,
+    /// What surfaces demand that the liquid does not pass.
+    seal: liquid::Seal<T>,
     spans: Spans<T, D>,
     /// Whether a particle came near the border of the grid's window.
     strayed: bool,
@@ -214,6 +216,12 @@ where
         } else {
             0
         };
+        let seal = {
+            let points = if P::FLOWS { surface_count } else { 0 };
+            let along = basis.degree() + 1;
+            let beside = along.pow(D as u32 - 1);
+            liquid::Seal::new(points, along * beside, beside)
+        };
         let spans = Spans::new(particles.len());
         let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
         let mut stepper = Self {
@@ -233,6 +241,7 @@ where
             sums: Vec::new(),
             motion: Vec::new(),
             joint: liquid::Joint::none(),
+            seal,
             spans,
             strayed: false,
             crossed: Vec::with_capacity(crossed_count),
@@ -293,7 +302,7 @@ where
             return;
         }
         if P::FLOWS {
-            self.map_both_before(&Forcing::none());
+            self.map_both_before(T::zero(), &Forcing::none());
             self.liquid.velocity.fill(SVector::zeros());
         } else {
             self.map_momentum();
@@ -392,7 +401,7 @@ where
     /// Velocities of particles and DOFs.
     fn kick(&mut self, kick: T, forcing: &Forcing<T, D>) {
         if P::FLOWS {
-            self.assemble_both(forcing);
+            self.assemble_both(kick, forcing);
             self.accelerate_both(kick, forcing);
             self.update_both_velocities(kick, forcing);
         } else {
@@ -576,6 +585,7 @@ where
             + size_of::<SMatrix<T, D, D>>() * self.relaxed.capacity()
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()
             + self.joint.bytes()
+            + self.seal.bytes()
             + both * self.drag.len()
     }
 

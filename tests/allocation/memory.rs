@@ -1,14 +1,16 @@
 //! `bytes_per_particle`, which `check` prints, against what the allocator was asked for.
 
 use allocation_counter::measure;
+use materialpoint::grid::{Face, Side};
 use materialpoint::mass::VelocityMass;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::phase::Drag;
-use materialpoint::run::{run, simulation};
+use materialpoint::run::{run, simulation, simulation_in};
 use materialpoint::scene::Scene;
-use materialpoint::stepper::{Forcing, Simulation};
+use materialpoint::stepper::{FaceCondition, Forcing, Simulation};
 
 use crate::two_phase::column::{AT_REST, Column, loaded, table_6};
+use crate::two_phase::sealed::SEALED_BOX;
 
 const CELLS: usize = 2000;
 
@@ -24,16 +26,20 @@ fn scene(method: Method, per_cell: usize) -> Scene {
 
 /// What was allocated and not freed by `build`, over what the stepper says; then steps, which must add nothing. On one thread:
 /// rayon itself may allocate when it wakes others.
-fn actual_over_said(
-    build: impl FnOnce() -> Box<dyn Simulation<1>> + Send,
-    forcing: &Forcing<f64, 1>,
+fn actual_over_said<const D: usize>(
+    build: impl FnOnce() -> Box<dyn Simulation<D>> + Send,
+    forcing: &Forcing<f64, D>,
     dt: f64,
 ) -> f64 {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     pool.install(|| measured(build, forcing, dt))
 }
 
-fn measured(build: impl FnOnce() -> Box<dyn Simulation<1>>, forcing: &Forcing<f64, 1>, dt: f64) -> f64 {
+fn measured<const D: usize>(
+    build: impl FnOnce() -> Box<dyn Simulation<D>>,
+    forcing: &Forcing<f64, D>,
+    dt: f64,
+) -> f64 {
     let mut built = None;
     let allocated = measure(|| built = Some(build())).bytes_current as f64;
     let mut simulation = built.unwrap();
@@ -77,6 +83,31 @@ fn a_two_phase_stepper_takes_what_it_says() {
             };
             let ratio = actual_over_said(|| column.build(method, |_| AT_REST), &loaded(-1e4), 1e-9);
             assert!((ratio - 1.0).abs() < 0.01, "{method} {mass:?}: {ratio}");
+        }
+    }
+}
+
+/// The pressure on a sealed surface, here that of a box of 40 by 40 cells on all sides but its base, is solved for in room that was
+/// there from the start.
+#[test]
+fn sealed_surfaces_in_the_plane_take_what_is_said() {
+    let room = [
+        "grid={min=[0, 0], max=[1, 1], cells=[42, 41]}".to_owned(),
+        "body=[{min=[0.0238, 0], max=[0.9762, 0.98], particles_per_cell=[2, 2]}]".to_owned(),
+        "time={step=1e-6, end=2e-6}".to_owned(),
+        "boundary=[{face='y-min', roller=true}]".to_owned(),
+    ];
+    for basis in [Basis::Linear, Basis::DualDomain, Basis::BSpline { degree: 2 }] {
+        for reconstruction in [ReconstructionKind::Shepard, ReconstructionKind::Taylor] {
+            let method = Method::new(basis, reconstruction);
+            let scene = Scene::from_toml(SEALED_BOX, &room).unwrap().with_method(method);
+            let floor = Face {
+                axis: 1,
+                side: Side::Min,
+            };
+            let forcing = Forcing::none().with_face(floor, FaceCondition::roller(1));
+            let ratio = actual_over_said(|| simulation_in::<2>(&scene).unwrap(), &forcing, 1e-6);
+            assert!((ratio - 1.0).abs() < 0.01, "{method}: {ratio}");
         }
     }
 }

@@ -10,4 +10,5 @@ mod equilibrium;
 mod large;
 mod long_waves;
 mod random;
+pub mod sealed;
 mod standing_wave;

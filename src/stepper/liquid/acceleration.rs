@@ -51,26 +51,38 @@ where
             liquid.force[i] = a_w;
         }
         self.hold_both(dt, forcing);
-        self.seal_surfaces(dt, forcing);
+        self.seal_accelerations(dt);
     }
 
     /// Told accelerations at held DOFs. Where the liquid passes a held face it still feels the solid's drag, now that of a
     /// solid that moves as told.
     fn hold_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        let n = self.phase.porosity();
-        let implicit = self.phase.drag_treatment() == Drag::Implicit;
+        let share = self.share_of_drag(dt);
         let (solid, liquid, drag) = (&mut self.dofs.force, &mut self.liquid.force, &self.drag);
         let liquid_mass = &self.liquid.mass;
         Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, told| {
-            if implicit && liquid_mass[dof] > T::zero() {
-                let drag = dt * drag[dof];
-                let share = drag / (liquid_mass[dof] / n + drag);
-                liquid[dof][axis] += share * (told - solid[dof][axis]);
-            }
+            liquid[dof][axis] += share(liquid_mass[dof], drag[dof]) * (told - solid[dof][axis]);
             solid[dof][axis] = told;
         });
         Walls::of_liquid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, told| {
             liquid[dof][axis] = told;
         });
+    }
+
+    /// Share of a change of the solid's velocity that the drag passes on to the liquid within a step, given the liquid's mass and the
+    /// drag of a DOF: none where the drag is felt at the step's start.
+    pub(super) fn share_of_drag(&self, dt: T) -> impl Fn(T, T) -> T + use<T, D, B, R, L, P> {
+        let n = self.phase.porosity();
+        let dt = match self.phase.drag_treatment() {
+            Drag::Implicit => dt,
+            Drag::Explicit => T::zero(),
+        };
+        move |mass, drag| {
+            if mass > T::zero() {
+                drag * dt / (mass / n + drag * dt)
+            } else {
+                T::zero()
+            }
+        }
     }
 }

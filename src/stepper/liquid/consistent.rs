@@ -6,9 +6,10 @@ use super::super::acceleration::Walls;
 use super::super::cell_sums::CellSums;
 use super::super::forces::{WEAK, fill_with_pairs};
 use super::super::lanes::Bodies;
+use super::super::matrix::MassMatrix;
 use super::super::{Forcing, Stepper};
 use super::joint::Joint;
-use super::surface::is_sealed;
+use super::seal::Components;
 use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::law::ConstitutiveLaw;
@@ -87,7 +88,7 @@ where
             Walls::of_solid(&self.face_dofs, forcing),
             Walls::of_liquid(&self.face_dofs, forcing),
         ]);
-        self.seal_jointly(dt, forcing);
+        self.seal_jointly(forcing);
         let accelerations = self.dofs.force.iter_mut().zip(&mut self.liquid.force);
         for (both, (of_solid, of_liquid)) in self.joint.right.chunks_exact(2).zip(accelerations) {
             *of_solid = both[0];
@@ -95,37 +96,51 @@ where
         }
     }
 
-    /// As [`Stepper::seal_surfaces`], with the answer of all DOFs to the pressure.
-    fn seal_jointly(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        for k in 0..self.surface.len() {
-            let point = &self.surface[k];
-            if !is_sealed(forcing, point) {
-                continue;
-            }
-            let axis = point.face.axis;
-            let x = self.surface_position(point);
-            let cell = self.bins.cell_of(point.particle);
-            let (basis, grid, joint) = (&self.basis, &self.grid, &mut self.joint);
-            joint.response.fill(SVector::zeros());
-            basis.for_each(grid, cell, &x, |i, phi, _| {
-                joint.response[2 * i + 1][axis] += phi;
+    /// As [`Stepper::seal_accelerations`], where all DOFs answer to the force on one.
+    fn seal_jointly(&mut self, forcing: &Forcing<T, D>) {
+        if self.seal.is_empty() {
+            return;
+        }
+        let walls = [
+            Walls::of_solid(&self.face_dofs, forcing),
+            Walls::of_liquid(&self.face_dofs, forcing),
+        ];
+        let joint = &mut self.joint;
+        self.seal
+            .components
+            .for_each::<D>(|dof, axis, _, _, slip| *slip = joint.right[2 * dof + 1][axis]);
+        self.seal.solve_with(|components| {
+            joint.respond_to(components, walls);
+            components.for_each::<D>(|dof, axis, _, _, slip| *slip = joint.response[2 * dof + 1][axis]);
+        });
+        joint.respond_to(&self.seal.components, walls);
+        for (acceleration, response) in joint.right.iter_mut().zip(&joint.response) {
+            *acceleration += response;
+        }
+    }
+
+    /// As [`Stepper::seal_velocities`], with the matrices that the velocities were mapped with.
+    pub(super) fn seal_mapped_jointly(&mut self) {
+        if self.seal.is_empty() {
+            return;
+        }
+        let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
+        let matrices = [&solid.matrix, &liquid.matrix];
+        // No response to a pressure is kept by then: there is room for the velocities that it makes.
+        let (of_solid, of_liquid) = self.joint.response.split_at_mut(solid.velocity.len());
+        self.seal.components.for_each::<D>(|dof, axis, _, _, slip| {
+            *slip = liquid.velocity[dof][axis] - solid.velocity[dof][axis];
+        });
+        self.seal.solve_with(|components| {
+            answer_to(components, matrices, [of_solid, of_liquid]);
+            components.for_each::<D>(|dof, axis, _, _, slip| {
+                *slip = of_liquid[dof][axis] - of_solid[dof][axis];
             });
-            joint.respond([
-                Walls::of_solid(&self.face_dofs, forcing),
-                Walls::of_liquid(&self.face_dofs, forcing),
-            ]);
-            let (mut slip, mut gain) = (T::zero(), T::zero());
-            basis.for_each(grid, cell, &x, |i, phi, _| {
-                let velocity = self.liquid.velocity[i][axis] - self.dofs.velocity[i][axis];
-                slip += (velocity + joint.right[2 * i + 1][axis] * dt) * phi;
-                gain += joint.response[2 * i + 1][axis] * phi * dt;
-            });
-            if gain <= T::zero() {
-                continue;
-            }
-            let pressure = -slip / gain;
-            for (acceleration, response) in joint.right.iter_mut().zip(&joint.response) {
-                *acceleration += response * pressure;
+        });
+        answer_to(&self.seal.components, matrices, [of_solid, of_liquid]);
+        for (dofs, answers) in [(solid, of_solid), (liquid, of_liquid)] {
+            for (velocity, answer) in dofs.velocity.iter_mut().zip(answers) {
+                *velocity += *answer;
             }
         }
     }
@@ -150,5 +165,25 @@ where
             momenta.add(cell, x, |phi, _| Pair(q_s * phi, q_w * phi), &mut sink);
         }
         momenta.flush(&mut sink);
+    }
+}
+
+/// Velocities of solid and liquid that the impulses of `components` on the liquid, and their opposites on the solid, make with the
+/// matrices of their masses.
+fn answer_to<T: Scalar, const D: usize>(
+    components: &Components<T>,
+    matrices: [&MassMatrix<T, D>; 2],
+    answers: [&mut [SVector<T, D>]; 2],
+) {
+    let signs = [-T::one(), T::one()];
+    for (phase, (matrix, answer)) in matrices.into_iter().zip(answers).enumerate() {
+        answer.fill(SVector::zeros());
+        let forces = components.force.iter().zip(&components.held);
+        for ((dof, axis), (&force, held)) in components.places::<D>().zip(forces) {
+            if !held[phase] {
+                answer[dof][axis] = force * signs[phase];
+            }
+        }
+        matrix.solve_again(answer);
     }
 }

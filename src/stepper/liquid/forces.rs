@@ -26,8 +26,9 @@ where
     ///
     /// The forces are `-integral(sigma grad phi_i)` of the total stress and `-integral(p grad phi_i)` of the pressure, both less
     /// the even part of what loads the surfaces, and the rest of that load.
-    pub(in super::super) fn assemble_both(&mut self, forcing: &Forcing<T, D>) {
+    pub(in super::super) fn assemble_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
         let even = self.even_load(forcing);
+        self.find_seals(forcing);
         if R::PLAIN {
             self.sum_everything(&even);
         } else {
@@ -37,7 +38,7 @@ where
             }
             self.integrate_forces(&even);
         }
-        self.map_both_before(forcing);
+        self.map_both_before(dt, forcing);
         self.add_uneven_loads(&even, forcing);
         if !self.body_forces.is_empty() {
             self.add_body_forces_to_both();

@@ -16,6 +16,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::super::acceleration::Walls;
 use super::super::matrix::MassMatrix;
+use super::seal::Components;
 use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::grid::Grid;
@@ -130,8 +131,17 @@ impl<T: Scalar, const D: usize> Joint<T, D> {
         }
     }
 
+    /// Makes `response` the answer to the force of sealed surfaces on the liquid.
+    pub(super) fn respond_to(&mut self, components: &Components<T>, walls: [Walls<'_, T, D>; 2]) {
+        self.response.fill(SVector::zeros());
+        for ((dof, axis), &force) in components.places::<D>().zip(&components.force) {
+            self.response[2 * dof + 1][axis] = force;
+        }
+        self.respond(walls);
+    }
+
     /// Makes `response` the answer to the right-hand side that it holds, which must not load what is held.
-    pub(super) fn respond(&mut self, [of_solid, of_liquid]: [Walls<'_, T, D>; 2]) {
+    fn respond(&mut self, [of_solid, of_liquid]: [Walls<'_, T, D>; 2]) {
         let response = &mut self.response;
         for slip in response.iter_mut().skip(1).step_by(2) {
             *slip *= self.slip_scale;

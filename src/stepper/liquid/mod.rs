@@ -19,9 +19,11 @@ mod dof;
 mod forces;
 mod joint;
 mod relax;
+mod seal;
 mod surface;
 mod velocity;
 
 pub(super) use critical::Coupled;
 pub(super) use dof::Sums;
 pub(super) use joint::Joint;
+pub(super) use seal::Seal;

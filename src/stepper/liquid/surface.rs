@@ -2,7 +2,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::super::acceleration::Walls;
 use super::super::{FaceCondition, Forcing, PoreCondition, Stepper, SurfacePoint};
+use super::seal::{Answer, Place, Seal};
 use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::law::ConstitutiveLaw;
@@ -40,9 +42,10 @@ fn is_held<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePo
     matches!(forcing.face(point.face), FaceCondition::Held { .. })
 }
 
-/// Whether the liquid does not pass a surface, which no wall holds.
-pub(super) fn is_sealed<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> bool {
-    !is_held(forcing, point) && forcing.pores(point.face) == PoreCondition::Sealed
+/// Whether the liquid does not pass a surface. A wall at the face makes no difference: where the surface does not lie on it nothing
+/// else stops the liquid, and where it does the slip is zero already.
+fn is_sealed<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> bool {
+    forcing.pores(point.face) == PoreCondition::Sealed
 }
 
 /// Force per area (Pa) on the whole.
@@ -116,47 +119,111 @@ where
         }
     }
 
-    /// A surface that the liquid does not pass: the pressure there is whatever keeps the liquid's velocity at the end of the
-    /// step equal to the solid's. One equation a surface, since a pressure `P` on the liquid alone changes
-    /// `a_w - a_s` of DOF `i` by `P phi_i (m_s + mbar) / det`.
-    pub(super) fn seal_surfaces(&mut self, dt: T, forcing: &Forcing<T, D>) {
+    /// Finds the points of the surfaces that the liquid does not pass.
+    pub(super) fn find_seals(&mut self, forcing: &Forcing<T, D>) {
+        self.seal.clear();
+        let shape = self.basis.dofs(&self.grid);
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
             if !is_sealed(forcing, point) {
                 continue;
             }
-            let axis = point.face.axis;
             let x = self.surface_position(point);
             let cell = self.bins.cell_of(point.particle);
-            let (solid, liquid, drag) = (&mut self.dofs, &mut self.liquid, &self.drag);
-            let implicit = self.phase.drag_treatment() == Drag::Implicit;
-            let n = self.phase.porosity();
-            // Accelerations of both phases for a unit force on the liquid alone.
-            let response = |m_s: T, m_bar: T, d: T| {
-                if !(m_s > T::zero() && m_bar > T::zero()) {
-                    return (T::zero(), T::zero());
-                }
-                let drag = if implicit { dt * d } else { T::zero() };
-                let a_w = T::one() / (m_bar / n + drag * (T::one() + m_bar / m_s));
-                (-m_bar * a_w / m_s, a_w)
+            let (basis, grid) = (&self.basis, &self.grid);
+            let place = Place {
+                face: point.face,
+                layer: cell[point.face.axis] as usize,
+                shape,
             };
-            let (mut slip, mut gain) = (T::zero(), T::zero());
-            self.basis.for_each(&self.grid, cell, &x, |i, phi, _| {
-                let velocity = liquid.velocity[i] - solid.velocity[i];
-                let acceleration = liquid.force[i] - solid.force[i];
-                slip += (velocity[axis] + acceleration[axis] * dt) * phi;
-                let (a_s, a_w) = response(solid.mass[i], liquid.mass[i], drag[i]);
-                gain += (a_w - a_s) * phi * phi * dt;
+            self.seal.add_point(&place, point.area, |add| {
+                basis.for_each(grid, cell, &x, |i, phi, _| add(i, phi));
             });
-            if gain <= T::zero() {
-                continue;
-            }
-            let force = -slip / gain;
-            self.basis.for_each(&self.grid, cell, &x, |i, phi, _| {
-                let (a_s, a_w) = response(solid.mass[i], liquid.mass[i], drag[i]);
-                solid.force[i][axis] += a_s * phi * force;
-                liquid.force[i][axis] += a_w * phi * force;
+        }
+        if self.seal.is_empty() {
+            return;
+        }
+        self.seal.number();
+        let components = &mut self.seal.components;
+        let walls = [
+            Walls::of_solid(&self.face_dofs, forcing),
+            Walls::of_liquid(&self.face_dofs, forcing),
+        ];
+        for (phase, walls) in walls.into_iter().enumerate() {
+            walls.for_each_held(|dof, axis, _, _| {
+                if let Some(k) = components.find::<D>(dof, axis) {
+                    components.held[k][phase] = true;
+                }
             });
         }
     }
+
+    /// Takes from the accelerations what would let liquid pass a sealed surface. The pressure there acts on the liquid alone, that
+    /// is, its opposite on the solid; the drag that is felt at the step's end resists.
+    pub(super) fn seal_accelerations(&mut self, dt: T) {
+        let resistance = self.resistance(dt);
+        let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
+        let masses = [&solid.mass[..], &liquid.mass];
+        let motion = [&mut solid.force[..], &mut liquid.force];
+        seal(&mut self.seal, masses, (&self.drag, resistance), motion);
+    }
+
+    /// Takes from the mapped velocities the slip through sealed surfaces, by the same projection.
+    pub(super) fn seal_velocities(&mut self, dt: T) {
+        let resistance = self.resistance(dt);
+        let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
+        let masses = [&solid.mass[..], &liquid.mass];
+        let motion = [&mut solid.velocity[..], &mut liquid.velocity];
+        seal(&mut self.seal, masses, (&self.drag, resistance), motion);
+    }
+
+    /// What makes mass of a DOF's drag.
+    fn resistance(&self, dt: T) -> T {
+        match self.phase.drag_treatment() {
+            Drag::Implicit => dt * self.phase.porosity(),
+            Drag::Explicit => T::zero(),
+        }
+    }
+}
+
+/// Takes from the `motion` of both phases the slip through the sealed surfaces, where every DOF answers by itself: with its
+/// lumped masses and the given multiple of its drag.
+fn seal<T: Scalar, const D: usize>(
+    seal: &mut Seal<T>,
+    [solid_mass, liquid_mass]: [&[T]; 2],
+    (drag, share): (&[T], T),
+    [solid, liquid]: [&mut [SVector<T, D>]; 2],
+) {
+    if seal.is_empty() {
+        return;
+    }
+    seal.components.for_each::<D>(|dof, axis, held, response, slip| {
+        *response = answer([solid_mass[dof], liquid_mass[dof]], drag[dof] * share, held);
+        *slip = liquid[dof][axis] - solid[dof][axis];
+    });
+    seal.solve();
+    let components = &seal.components;
+    let answers = components.answers.iter().zip(&components.force);
+    for ((dof, axis), (answer, &force)) in components.places::<D>().zip(answers) {
+        solid[dof][axis] += answer.solid * force;
+        liquid[dof][axis] += answer.liquid * force;
+    }
+}
+
+/// Accelerations of both phases at a DOF for a unit force on the liquid and its opposite on the solid, which the `drag` opposes.
+fn answer<T: Scalar>([m_s, m_w]: [T; 2], drag: T, [solid_held, liquid_held]: [bool; 2]) -> Answer<T> {
+    if liquid_held || !(m_s > T::zero() && m_w > T::zero()) {
+        return Answer::none();
+    }
+    if solid_held {
+        let liquid = T::one() / (m_w + drag);
+        return Answer {
+            solid: T::zero(),
+            liquid,
+        };
+    }
+    // Without products of masses, which would underflow in nearly empty cells.
+    let liquid = T::one() / (m_w + drag * (T::one() + m_w / m_s));
+    let solid = -liquid * (m_w / m_s);
+    Answer { solid, liquid }
 }
