@@ -5,10 +5,9 @@ use std::time::{Duration, Instant};
 
 use super::Progress;
 use super::checkpoint;
-use super::critical_step_in;
 use super::error::RunError;
 use super::frames::Frames;
-use super::limits::remedy;
+use super::limits::advice;
 use super::loads::forcing;
 use super::schedule::Schedule;
 use super::space::InSpace;
@@ -21,7 +20,6 @@ pub(super) const ENERGY_SAMPLES: usize = 1000;
 /// A run to march through.
 pub(super) struct Journey<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) schedule: &'a Schedule,
     /// How often the energy is sampled.
     pub(super) samples: usize,
     /// Where it begins.
@@ -91,9 +89,8 @@ struct Due {
 }
 
 impl Journey<'_> {
-    fn due(&self, done: usize) -> Due {
+    fn due(&self, done: usize, steps: usize) -> Due {
         let output = &self.scene.output;
-        let steps = self.schedule.steps;
         let every = |period: usize| period > 0 && done.is_multiple_of(period);
         let frame = every(output.every) && done < steps;
         let sample_every = steps.div_ceil(self.samples.max(1)).max(1);
@@ -107,8 +104,10 @@ impl Journey<'_> {
 }
 
 /// Steps `simulation` to the end, writing particles and checkpoints when the scene asks for it, and sampling the energy.
+/// Steps that are renewed change `schedule`.
 pub(super) fn march<const D: usize>(
     journey: &Journey<'_>,
+    schedule: &mut Schedule,
     simulation: &mut dyn Simulation<D>,
     frames: &mut Frames<'_>,
     progress: &mut dyn FnMut(Progress),
@@ -116,19 +115,13 @@ pub(super) fn march<const D: usize>(
 where
     Scene: InSpace<D>,
 {
-    let Journey {
-        scene,
-        schedule,
-        from,
-        ..
-    } = journey;
-    let steps = schedule.steps;
+    let Journey { scene, from, .. } = journey;
     let mut march = March {
         energy: from.energy,
         ..March::default()
     };
     // A resumed run has begun already; one that has nothing left to do may end earlier than it was to.
-    if from.done == 0 || from.done == steps {
+    if from.done == 0 || from.done == schedule.steps {
         let start = march.energy.sample(simulation.energy().total());
         start.map_err(|value| RunError::NoEnergyAtStart { value })?;
     }
@@ -136,33 +129,30 @@ where
         frames.write(Some(0), 0.0, &simulation.particles(), &simulation.liquid())?;
     }
     let driver = scene.driver()?;
-    progress(Progress {
-        step: from.done,
-        steps,
-    });
+    let mut tell = |step, steps, dt| progress(Progress { step, steps, dt });
+    tell(from.done, schedule.steps, schedule.dt);
     let mut begun = Instant::now();
-    for step in from.done..steps {
+    let mut step = from.done;
+    while step < schedule.steps {
+        if step > 0 {
+            schedule.look(step, scene, simulation)?;
+        }
         let dt = schedule.size(step);
         let forcing = forcing(scene, schedule.time(step), dt)?;
         if let Some(driver) = &driver {
             simulation.set_body_forces(&|x| driver.body_force(x, schedule.time(step)));
         }
         if let Err(source) = simulation.step(dt, &forcing) {
-            let (critical, remedy) = limit::<D>(scene);
-            return Err(RunError::Stopped {
-                source,
-                dt,
-                critical,
-                remedy,
-            });
+            let advice = advice(scene, schedule, Some(&source));
+            return Err(RunError::Stopped { source, advice });
         }
         march.steps += 1;
         let done = step + 1;
-        let due = journey.due(done);
+        let due = journey.due(done, schedule.steps);
         if due.sample || due.checkpoint {
             // The clock runs for the step loop only.
             march.wall += begun.elapsed();
-            check_energy(scene, simulation, &mut march, &due, (done, dt))?;
+            check_energy((scene, schedule), simulation, &mut march, &due, done)?;
             if due.frame && frames.are_wanted() {
                 let (particles, liquid) = (simulation.particles(), simulation.liquid());
                 frames.write(Some(done), schedule.time(done), &particles, &liquid)?;
@@ -172,24 +162,25 @@ where
                 let milestone = Milestone { done, energy };
                 march.checkpoint = checkpoint::write((scene, schedule), &milestone, frames, simulation)?;
             }
-            progress(Progress { step: done, steps });
+            tell(done, schedule.steps, dt);
             begun = Instant::now();
+        } else if march.steps.is_power_of_two() {
+            // A run of very many steps says soon how long it will take.
+            tell(done, schedule.steps, dt);
         }
+        step = done;
     }
     Ok(march)
 }
 
 /// Samples the energy if that is due. A checkpoint needs one too: of numbers that are none nothing good comes.
 fn check_energy<const D: usize>(
-    scene: &Scene,
+    (scene, schedule): (&Scene, &Schedule),
     simulation: &dyn Simulation<D>,
     march: &mut March,
     due: &Due,
-    (step, dt): (usize, f64),
-) -> Result<(), RunError>
-where
-    Scene: InSpace<D>,
-{
+    step: usize,
+) -> Result<(), RunError> {
     let value = simulation.energy().total();
     let fine = match due.sample {
         true => march.energy.sample(value).is_ok(),
@@ -198,25 +189,8 @@ where
     if fine {
         return Ok(());
     }
-    let (critical, remedy) = limit::<D>(scene);
-    Err(RunError::NoEnergy {
-        step,
-        value,
-        dt,
-        critical,
-        remedy,
-    })
-}
-
-/// Largest stable step (s) of the initial layout, if it can be found, and what helps against a larger one.
-fn limit<const D: usize>(scene: &Scene) -> (Option<f64>, &'static str)
-where
-    Scene: InSpace<D>,
-{
-    match critical_step_in::<D>(scene).ok().flatten() {
-        Some(limit) => (Some(limit.step), remedy(limit.mechanism)),
-        None => (None, ""),
-    }
+    let advice = advice(scene, schedule, None);
+    Err(RunError::NoEnergy { step, value, advice })
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::limits::EnergyGain;
 use super::march::March;
 use super::norms::ErrorNorms;
 use super::schedule::Schedule;
@@ -111,8 +112,11 @@ pub struct Summary {
     pub steps: usize,
     /// Time reached (s).
     pub time: f64,
-    /// Size of a step (s).
+    /// Size of a step (s); of steps that were renewed their mean.
     pub time_step: f64,
+    /// Least and greatest size (s) of steps that were renewed with a result: absent where all are alike.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_step_range: Option<[f64; 2]>,
     /// Time of the step loop on the clock (s); of a resumed run that of the steps taken since.
     pub wall_seconds: f64,
     /// Particles times steps per second; of a resumed run those of the steps taken since.
@@ -157,6 +161,7 @@ impl Summary {
             .into_iter()
             .filter_map(|(phase, errors)| Some((phase, errors?.into())))
             .collect();
+        let renewed = schedule.range[0] < schedule.range[1];
         let energy = march.energy;
         // Of next to nothing nothing is a finite multiple.
         let ratio = |value: f64| Some(value / energy.initial).filter(|ratio| ratio.is_finite());
@@ -168,7 +173,12 @@ impl Summary {
             dofs: simulation.dof_count(),
             steps: schedule.steps,
             time: schedule.end,
-            time_step: schedule.dt,
+            time_step: if renewed {
+                schedule.end / schedule.steps as f64
+            } else {
+                schedule.dt
+            },
+            time_step_range: renewed.then_some(schedule.range),
             wall_seconds,
             particle_steps_per_second,
             bytes_per_particle: simulation.bytes_per_particle(),
@@ -185,5 +195,10 @@ impl Summary {
             },
             warnings: Vec::new(),
         }
+    }
+
+    /// By how much the energy rose although nothing of `scene` gives any; `None` if it did not, or may.
+    pub fn energy_gain(&self, scene: &Scene) -> Option<EnergyGain> {
+        EnergyGain::of(scene, self.energy.highest_ratio?)
     }
 }

@@ -17,6 +17,7 @@
 mod acceleration;
 mod advance;
 mod body_forces;
+mod bound;
 mod by_four;
 mod cell_sums;
 mod checkpoint;
