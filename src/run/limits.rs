@@ -6,7 +6,7 @@ use super::schedule::Schedule;
 use crate::error::StepError;
 use crate::grid::{Face, Side};
 use crate::scene::{
-    Basis, Boundary, BoundaryKind, Phases, PoreBoundary, ReconstructionKind, Scene, StepSize,
+    Basis, Boundary, BoundaryKind, Method, Phases, PoreBoundary, ReconstructionKind, Scene, StepSize,
 };
 use crate::stepper::Mechanism;
 
@@ -64,14 +64,28 @@ fn step_warning(scene: &Scene, schedule: &Schedule) -> Option<String> {
     };
     when.is_finite().then(|| {
         format!(
-            "time.step = {:.3e} s is above the largest stable step {since}, {:.3e} s then with the speed of the particles, limited \
-             by {}; take a smaller one or \"auto\"{}",
+            "time.step = {:.3e} s is above the largest stable step {since}, {:.3e} s {} with the speed that the particles have \
+             then, limited by {}; take a smaller one or \"auto\"{}",
             schedule.dt,
             limit.step,
+            found_by(scene),
             mechanism(scene, limit.mechanism),
             remedy(limit.mechanism)
         )
     })
+}
+
+/// How the largest stable step of a run is found: plain MPM has a bound, which the limit itself is above.
+fn found_by(scene: &Scene) -> &'static str {
+    let Method {
+        reconstruction,
+        subpoints,
+        ..
+    } = scene.method;
+    match reconstruction == ReconstructionKind::Shepard && subpoints == 1 {
+        true => "by a bound",
+        false => "by a sample of the particles",
+    }
 }
 
 fn period_warning(key: &str, period: usize, steps: usize) -> Option<String> {
@@ -138,21 +152,20 @@ fn gives_no_energy(scene: &Scene) -> bool {
 /// What to do about a run that stopped, by `fault` if that is known: the end of a sentence.
 pub(super) fn advice(scene: &Scene, schedule: &Schedule, fault: Option<&StepError>) -> String {
     let (dt, limit) = (schedule.dt, schedule.limit.step);
+    let unstable = dt > limit;
     let step = match scene.time.step {
-        StepSize::Fixed(_) if dt > limit => {
-            return format!(
-                "the run is unstable: time.step = {dt:.3e} s is above the largest stable step, {limit:.3e} s, so take a smaller \
-                 one or \"auto\"{}",
-                remedy(schedule.limit.mechanism)
-            );
-        }
+        StepSize::Fixed(_) if unstable => format!(
+            "the run is unstable: time.step = {dt:.3e} s is above the largest stable step, {limit:.3e} s, so take a smaller one or \
+             \"auto\"{}",
+            remedy(schedule.limit.mechanism)
+        ),
         StepSize::Fixed(_) => {
             format!(
                 "take a smaller time.step than {dt:.3e} s, which is within the largest stable step, {limit:.3e} s"
             )
         }
         StepSize::Auto { .. } => format!(
-            "take a smaller time.safety than {:?} (the step was {dt:.3e} s, the largest stable one {limit:.3e} s)",
+            "take a smaller time.safety than {:?} (the step was {dt:.3e} s, the largest stable step {limit:.3e} s)",
             scene.safety()
         ),
     };
@@ -160,10 +173,11 @@ pub(super) fn advice(scene: &Scene, schedule: &Schedule, fault: Option<&StepErro
         Some(StepError::LeftGrid { position, .. }) => face_left(scene, position),
         _ => None,
     };
-    place.map_or_else(
-        || format!("{step}; if that does not help look at the loads, the grid's extent and the method"),
-        |place| format!("{step}; {place}"),
-    )
+    match place {
+        Some(place) => format!("{step}; {place}"),
+        None if unstable => step,
+        None => format!("{step}; if that does not help look at the loads, the grid's extent and the method"),
+    }
 }
 
 /// The face through which a particle left to `position` (m), if nothing holds it there.
