@@ -2,9 +2,12 @@
 
 use materialpoint::method::Method;
 use materialpoint::scene::Scene;
+use serde_json::{Map, Value, json};
 
-const NAMES: [(&str, &[(&str, &str)]); 5] = [
+/// Key in JSON, heading for people, and what there is, by name.
+const NAMES: [(&str, &str, &[(&str, &str)]); 5] = [
     (
+        "bases",
         "basis families (method.basis)",
         &[
             ("linear", "piecewise linear hats: the original MPM"),
@@ -16,6 +19,7 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
         ],
     ),
     (
+        "reconstructions",
         "reconstructions (method.reconstruction)",
         &[
             (
@@ -37,6 +41,7 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
         ],
     ),
     (
+        "laws",
         "laws (material.law.NAME with material.strain)",
         &[
             (
@@ -61,6 +66,7 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
         ],
     ),
     (
+        "phases",
         "phases (material.phases)",
         &[
             ("1", "a dry solid"),
@@ -71,6 +77,7 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
         ],
     ),
     (
+        "references",
         "references ([reference])",
         &[
             (
@@ -112,7 +119,7 @@ const NAMES: [(&str, &[(&str, &str)]); 5] = [
 /// The list for people.
 pub(super) fn list() -> String {
     let mut lines = Vec::new();
-    for (heading, names) in NAMES {
+    for (_, heading, names) in NAMES {
         lines.push(heading.to_owned());
         lines.extend(names.iter().map(|(name, words)| format!("  {name:<19} {words}")));
     }
@@ -124,4 +131,20 @@ pub(super) fn list() -> String {
         methods.join(", ")
     ));
     lines.join("\n")
+}
+
+/// The same as one JSON object: lists of `name` and `about`, of scenes and methods the names alone.
+pub(super) fn json() -> Value {
+    let entry = |&(name, about): &(&str, &str)| json!({ "name": name, "about": about });
+    let list = |names: &[(&str, &str)]| Value::Array(names.iter().map(entry).collect());
+    let mut all: Map<_, _> = NAMES
+        .iter()
+        .map(|(key, _, names)| (key.to_string(), list(names)))
+        .collect();
+    all.insert("scenes".to_owned(), Scene::builtin_names().collect());
+    all.insert(
+        "methods".to_owned(),
+        Method::ALL.iter().map(Method::to_string).collect(),
+    );
+    Value::Object(all)
 }

@@ -4,6 +4,7 @@ mod bar;
 mod check;
 mod failure;
 mod list;
+mod pace;
 mod print;
 mod run;
 mod study;
@@ -43,11 +44,17 @@ enum Command {
     Study {
         /// Scene file (TOML), or the name of a compiled-in scene (see `list`).
         scene: String,
+        #[command(flatten)]
+        flags: StudyFlags,
     },
     /// Validate a scene; print what will be modelled and the largest stable time step.
     Check {
         /// Scene file (TOML), or the name of a compiled-in scene (see `list`).
         scene: String,
+        /// Find the largest stable step of the start by power iteration on all particles instead of a bound: up to twice as
+        /// large, but some hundred steps' work.
+        #[arg(long)]
+        sharp: bool,
     },
     /// List basis families, reconstructions, laws, phases, references and scenes.
     List,
@@ -74,18 +81,44 @@ struct Shared {
 }
 
 /// Flags of a study.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 struct StudyFlags {
-    /// Methods: all, or a list of basis+reconstruction (linear+taylor,bspline3+spline); dual-domain+shepard4 has 4 sub-points
-    /// in each particle.
-    #[arg(long, default_value = "all", global = true)]
-    methods: String,
+    /// Methods: all (also without the flag), or a list of basis+reconstruction (linear+taylor,bspline3+spline);
+    /// dual-domain+shepard4 has 4 sub-points in each particle.
+    #[arg(long)]
+    methods: Option<String>,
     /// Numbers of cells.
-    #[arg(long, value_delimiter = ',', value_name = "N,N,...", global = true)]
+    #[arg(long, value_delimiter = ',', value_name = "N,N,...")]
     cells: Vec<usize>,
-    /// Time each run at least this often, in turns; the median counts. Short runs are timed until that takes 0.1 s.
-    #[arg(long, value_name = "N", default_value_t = 1, global = true)]
-    repeat: usize,
+    /// Time each run at least this often (once unless told), in turns; the median counts. Short runs are timed until that takes
+    /// 0.1 s.
+    #[arg(long, value_name = "N")]
+    repeat: Option<usize>,
+}
+
+impl StudyFlags {
+    /// Name of the first one that was given.
+    fn given(&self) -> Option<&'static str> {
+        [
+            ("--methods", self.methods.is_some()),
+            ("--cells", !self.cells.is_empty()),
+            ("--repeat", self.repeat.is_some()),
+        ]
+        .into_iter()
+        .find_map(|(name, given)| given.then_some(name))
+    }
+
+    /// These, and the `others` where these are silent.
+    fn or(&self, others: &Self) -> Self {
+        Self {
+            methods: self.methods.clone().or_else(|| others.methods.clone()),
+            cells: match self.cells.is_empty() {
+                true => others.cells.clone(),
+                false => self.cells.clone(),
+            },
+            repeat: self.repeat.or(others.repeat),
+        }
+    }
 }
 
 /// Does what the arguments say.
@@ -95,12 +128,21 @@ pub(crate) fn execute(arguments: &Arguments) -> Result<(), Failure> {
         shared,
         study,
     } = arguments;
+    if let (Some(name), false) = (
+        study.given(),
+        matches!(command, None | Some(Command::Study { .. })),
+    ) {
+        return Err(Failure::Input(format!(
+            "{name} is a flag of `study` only; leave it out, or give the scene to `materialpoint study`"
+        )));
+    }
     use_threads(shared.threads)?;
     match command {
         None => study::default_study(shared, study),
-        Some(Command::Study { scene }) => study::study_scene(scene, shared, study),
+        Some(Command::Study { scene, flags }) => study::study_scene(scene, shared, &flags.or(study)),
         Some(Command::Run { scene, resume }) => run::run_scene(scene, resume.as_deref(), shared),
-        Some(Command::Check { scene }) => check::check_scene(scene, shared),
+        Some(Command::Check { scene, sharp }) => check::check_scene(scene, *sharp, shared),
+        Some(Command::List) if shared.json => print::print_json(&list::json()),
         Some(Command::List) => print::print(&list::list()),
     }
 }

@@ -1,15 +1,19 @@
 //! `materialpoint run`.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use materialpoint::output::Folder;
-use materialpoint::run::{InSpace, Outcome, Progress, RunError, Summary, resume_in, run_in, warnings};
+use materialpoint::run::{
+    EnergyGain, InSpace, Outcome, Progress, RunError, Summary, resume_in, run_in, warnings,
+};
 use materialpoint::scene::{Scene, SceneError};
 use materialpoint::study::{write_fields, write_maps};
 
 use super::Shared;
 use super::bar::bar;
 use super::failure::Failure;
+use super::pace::Pace;
 use super::print::{print, print_json};
 
 /// The scene in the file `name`, or the compiled-in one of that name.
@@ -25,9 +29,17 @@ pub(super) fn run_scene(name: &str, resume: Option<&Path>, shared: &Shared) -> R
     let scene = load(name, &shared.set)?;
     let folder = Folder::create(&shared.out)?;
     let progress_bar = bar(shared.quiet, 0, "steps");
+    let mut pace = Pace::new();
     let mut progress = |progress: Progress| {
         progress_bar.set_length(progress.steps as u64);
         progress_bar.set_position(progress.step as u64);
+        if pace.is_at_start() {
+            // The time before the first step is none of the steps'.
+            progress_bar.reset_eta();
+        }
+        if let Some(warning) = pace.warning(&progress, Instant::now()) {
+            progress_bar.suspend(|| warn(&[warning]));
+        }
     };
     let begin = Begin {
         scene: &scene,
@@ -45,11 +57,22 @@ pub(super) fn run_scene(name: &str, resume: Option<&Path>, shared: &Shared) -> R
         warn(&warnings(&scene)?);
     }
     let (summary, files) = done?;
-    warn(&summary.warnings);
-    if shared.json {
-        return print_json(&summary);
+    let gain = summary.energy_gain(&scene).filter(EnergyGain::is_large);
+    match gain {
+        // It is what the command ends with.
+        Some(gain) => warn(
+            summary
+                .warnings
+                .iter()
+                .filter(|warning| **warning != gain.to_string()),
+        ),
+        None => warn(&summary.warnings),
     }
-    print(&summary_text(&summary, &files))
+    match shared.json {
+        true => print_json(&summary)?,
+        false => print(&summary_text(&summary, &files))?,
+    }
+    gain.map_or(Ok(()), |gain| Err(Failure::Stopped(gain.to_string())))
 }
 
 /// What is run, from where, and where its files go.
@@ -91,7 +114,7 @@ where
 }
 
 /// Warnings go to standard error, so that standard output stays what was asked for.
-pub(super) fn warn(warnings: &[String]) {
+pub(super) fn warn<'a>(warnings: impl IntoIterator<Item = &'a String>) {
     for warning in warnings {
         eprintln!("materialpoint: warning: {warning}");
     }
@@ -109,6 +132,7 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         time,
         velocity_time,
         time_step,
+        time_step_range,
         wall_seconds,
         particle_steps_per_second,
         bytes_per_particle,
@@ -140,8 +164,12 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
         "  model         {particles} particles, {cells} cells, {dofs} DOFs"
     ));
     lines.push(format!(
-        "  time          {steps} steps of {time_step:.3e} s to {time:.6} s; velocities are those of \
-         {velocity_time:.6} s"
+        "  time          {steps} steps of {time_step:.3e} s{} to {time:.6} s; velocities are those of \
+         {velocity_time:.6} s",
+        match time_step_range {
+            None => String::new(),
+            Some([least, most]) => format!(" on average ({least:.3e} to {most:.3e} s)"),
+        }
     ));
     lines.push(format!(
         "  speed         {wall_seconds:.3} s, {:.2} million particle steps per second, {bytes_per_particle:.0} bytes per particle",

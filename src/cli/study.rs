@@ -74,15 +74,16 @@ fn plan(scene: &Scene, flags: &StudyFlags, default_cells: &[usize]) -> Result<Pl
     if cells.first() == Some(&0) {
         return Err(Failure::Input("--cells: a grid needs at least 1 cell".into()));
     }
-    if flags.repeat == 0 {
+    let repeat = flags.repeat.unwrap_or(1);
+    if repeat == 0 {
         return Err(Failure::Input(
             "--repeat 0: each run must be timed at least once".into(),
         ));
     }
     Ok(Plan {
-        methods: methods(scene, &flags.methods)?,
+        methods: methods(scene, flags.methods.as_deref().unwrap_or("all"))?,
         cells,
-        repeat: flags.repeat,
+        repeat,
         least_seconds: LEAST_SECONDS,
     })
 }

@@ -89,6 +89,24 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
         self.mass[p] / self.volume[p]
     }
 
+    /// Those of the given numbers, in that order.
+    pub(crate) fn picked(&self, numbers: &[usize]) -> Self {
+        fn pick<A: Copy>(values: &[A], numbers: &[usize]) -> Vec<A> {
+            numbers.iter().map(|&p| values[p]).collect()
+        }
+        Self {
+            initial_position: pick(&self.initial_position, numbers),
+            position: pick(&self.position, numbers),
+            displacement: pick(&self.displacement, numbers),
+            velocity: pick(&self.velocity, numbers),
+            stress: pick(&self.stress, numbers),
+            mass: pick(&self.mass, numbers),
+            volume: pick(&self.volume, numbers),
+            state: pick(&self.state, numbers),
+            phase: pick(&self.phase, numbers),
+        }
+    }
+
     /// What moves and deforms of each particle.
     pub(crate) fn movable(&mut self) -> Movables<'_, T, D, S, P> {
         Movables {

@@ -72,6 +72,16 @@ pub enum RunError {
         /// What the law bears instead.
         allowed: String,
     },
+    /// `step = "auto"` that never gets to the end.
+    #[error(
+        "time.end: with time.step = \"auto\" it takes {steps:.1e} steps of {dt:.3e} s; expected at most 1e12, so an earlier end, larger cells or a softer material"
+    )]
+    TooManySteps {
+        /// How many it would be.
+        steps: f64,
+        /// Their size (s).
+        dt: f64,
+    },
     /// `step = "auto"` on particles that nothing resists.
     #[error(
         "time.step = \"auto\": nothing resists a motion of these particles, so no step is critical; give a number"
@@ -86,45 +96,23 @@ pub enum RunError {
         value: f64,
     },
     /// Numbers that grew beyond what a float can hold, or a stress beyond what the law can bear.
-    #[error("step {step}: the energy of the particles became {value}; {}", advice(*dt, *critical, remedy))]
+    #[error("step {step}: the energy of the particles became {value}; {advice}")]
     NoEnergy {
         /// Number of the step, from 1.
         step: usize,
         /// What came out (J; in one dimension J/m2, in two J/m).
         value: f64,
-        /// Time step of the run (s).
-        dt: f64,
-        /// Largest stable step of the initial layout (s), if it could be found.
-        critical: Option<f64>,
-        /// What helps against a step above it, besides a smaller one.
-        remedy: &'static str,
+        /// What to do, with the key to change.
+        advice: String,
     },
     /// The run stopped on the way.
-    #[error("{source}; {}{note}", advice(*dt, *critical, remedy))]
+    #[error("{source}; {advice}")]
     Stopped {
         /// What happened, at which step, to which particle.
         source: StepError,
-        /// Time step of the run (s).
-        dt: f64,
-        /// Largest stable step of the initial layout (s), if it could be found.
-        critical: Option<f64>,
-        /// What helps against a step above it, besides a smaller one.
-        remedy: &'static str,
-        /// What else was seen in the particles as they are then: empty, or the end of a sentence.
-        note: String,
+        /// What to do, with the key to change.
+        advice: String,
     },
-}
-
-fn advice(dt: f64, critical: Option<f64>, remedy: &str) -> String {
-    match critical {
-        Some(limit) if dt > limit => format!(
-            "the run is unstable: time.step = {dt:.3e} s is above the largest stable step, {limit:.3e} s, so take a smaller one or \"auto\"{remedy}"
-        ),
-        Some(limit) => format!(
-            "time.step = {dt:.3e} s is within the largest stable step of the initial layout, {limit:.3e} s, so look at the loads, the grid's extent and the method"
-        ),
-        None => format!("time.step = {dt:.3e} s; look at the loads and the grid's extent"),
-    }
 }
 
 impl From<CheckpointError> for RunError {

@@ -5,15 +5,15 @@ use std::time::{Duration, Instant};
 
 use super::Progress;
 use super::checkpoint;
-use super::critical_step_in;
 use super::error::RunError;
 use super::frames::{Frames, Moment};
-use super::limits::remedy;
+use super::limits::advice;
 use super::loads::forcing;
 use super::particle_fields::Snapshot;
 use super::schedule::Schedule;
 use super::space::InSpace;
 use super::warnings;
+use crate::error::StepError;
 use crate::scene::Scene;
 use crate::stepper::Simulation;
 
@@ -23,7 +23,6 @@ pub(super) const ENERGY_SAMPLES: usize = 1000;
 /// A run to march through.
 pub(super) struct Journey<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) schedule: &'a Schedule,
     /// How often the energy is sampled.
     pub(super) samples: usize,
     /// Where it begins.
@@ -89,9 +88,8 @@ struct Due {
 }
 
 impl Journey<'_> {
-    fn due(&self, done: usize) -> Due {
+    fn due(&self, done: usize, steps: usize) -> Due {
         let output = &self.scene.output;
-        let steps = self.schedule.steps;
         let every = |period: usize| period > 0 && done.is_multiple_of(period);
         let frame = every(output.every) && done < steps;
         let sample_every = steps.div_ceil(self.samples.max(1)).max(1);
@@ -105,8 +103,10 @@ impl Journey<'_> {
 }
 
 /// Steps `simulation` to the end, writing particles and checkpoints when the scene asks for it, and sampling the energy.
+/// Steps that are renewed change `schedule`.
 pub(super) fn march<const D: usize>(
     journey: &Journey<'_>,
+    schedule: &mut Schedule,
     simulation: &mut dyn Simulation<D>,
     frames: &mut Frames<'_>,
     progress: &mut dyn FnMut(Progress),
@@ -114,31 +114,27 @@ pub(super) fn march<const D: usize>(
 where
     Scene: InSpace<D>,
 {
-    let Journey {
-        scene,
-        schedule,
-        from,
-        ..
-    } = journey;
-    let steps = schedule.steps;
+    let Journey { scene, from, .. } = journey;
     let mut march = March {
         energy: from.energy,
         ..March::default()
     };
     // A resumed run has begun already; one that has nothing left to do may end earlier than it was to.
-    if from.done == 0 || from.done == steps {
-        start_energy(simulation, &mut march, from.done == steps)?;
+    if from.done == 0 || from.done == schedule.steps {
+        start_energy(simulation, &mut march, from.done == schedule.steps)?;
     }
     if from.done == 0 && frames.begin_at_start() {
-        write_frame(journey, 0, frames, simulation)?;
+        write_frame((scene, schedule), 0, frames, simulation)?;
     }
     let driver = scene.driver()?;
-    progress(Progress {
-        step: from.done,
-        steps,
-    });
+    let mut tell = |step, steps, dt| progress(Progress { step, steps, dt });
+    tell(from.done, schedule.steps, schedule.dt);
     let mut begun = Instant::now();
-    for step in from.done..steps {
+    let mut step = from.done;
+    while step < schedule.steps {
+        if step > 0 {
+            schedule.look(step, scene, simulation)?;
+        }
         let dt = schedule.size(step);
         let forcing = forcing(scene, schedule.time(step), dt)?;
         if let Some(driver) = &driver {
@@ -146,58 +142,64 @@ where
         }
         let kick = schedule.kick(step, scene.time.half_kick);
         let done = step + 1;
-        let due = journey.due(done);
+        let due = journey.due(done, schedule.steps);
         // The energy of a step is that at its start, the first one's that at the start of the run.
         let measured = match due.sample || step == 0 {
             true => simulation.step_and_measure(kick, dt, &forcing).map(Some),
             false => simulation.step_with_kick(kick, dt, &forcing).map(|()| None),
         };
-        let energy = match measured {
-            Ok(energy) => energy,
-            Err(source) => {
-                let (critical, remedy) = limit::<D>(scene);
-                // Strains of an unstable step say nothing of the scene.
-                let stable = critical.is_none_or(|limit| dt <= limit);
-                let strained = match stable {
-                    true => warnings::small_strain(scene, &simulation.particles(), schedule.dt)?,
-                    false => None,
-                };
-                return Err(RunError::Stopped {
-                    source,
-                    dt,
-                    critical,
-                    remedy,
-                    note: strained.map_or_else(String::new, |warning| format!("; {warning}")),
-                });
-            }
-        };
+        let energy = measured.or_else(|fault| Err(stopped((scene, schedule), simulation, fault)?))?;
         march.steps += 1;
         if let Some(energy) = energy {
-            take_energy(scene, energy.total(), &mut march, (done, dt))?;
+            refuse_no_energy((scene, schedule), energy.total(), done)?;
+            march.energy.sample(energy.total());
         }
         if due.sample || due.checkpoint {
             // The clock runs for the step loop only.
             march.wall += begun.elapsed();
             if due.checkpoint {
-                refuse_no_energy(scene, simulation.energy().total(), (done, dt))?;
+                refuse_no_energy((scene, schedule), simulation.energy().total(), done)?;
             }
             if due.frame && frames.are_wanted() {
-                write_frame(journey, done, frames, simulation)?;
+                write_frame((scene, schedule), done, frames, simulation)?;
             }
             if due.checkpoint {
                 let energy = march.energy;
                 let milestone = Milestone { done, energy };
                 march.checkpoint = checkpoint::write((scene, schedule), &milestone, frames, simulation)?;
             }
-            progress(Progress { step: done, steps });
+            tell(done, schedule.steps, dt);
             begun = Instant::now();
+        } else if march.steps.is_power_of_two() {
+            // A run of very many steps says soon how long it will take.
+            tell(done, schedule.steps, dt);
         }
+        step = done;
     }
     Ok(march)
 }
 
+/// The error of a run that stopped with a `fault` of its step.
+fn stopped<const D: usize>(
+    (scene, schedule): (&Scene, &Schedule),
+    simulation: &dyn Simulation<D>,
+    source: StepError,
+) -> Result<RunError, RunError>
+where
+    Scene: InSpace<D>,
+{
+    let mut advice = advice(scene, schedule, Some(&source));
+    // Strains of an unstable step say nothing of the scene.
+    if schedule.dt <= schedule.limit.step
+        && let Some(warning) = warnings::small_strain(scene, &simulation.particles(), schedule.dt)?
+    {
+        advice = format!("{advice}; {warning}");
+    }
+    Ok(RunError::Stopped { source, advice })
+}
+
 fn write_frame<const D: usize>(
-    journey: &Journey<'_>,
+    (scene, schedule): (&Scene, &Schedule),
     done: usize,
     frames: &mut Frames<'_>,
     simulation: &dyn Simulation<D>,
@@ -207,7 +209,7 @@ fn write_frame<const D: usize>(
         liquid: &simulation.liquid(),
         law: &simulation.material_fields(),
     };
-    frames.write(Moment::after(journey.scene, journey.schedule, done), &snapshot)
+    frames.write(Moment::after(scene, schedule, done), &snapshot)
 }
 
 /// Refuses a start whose energy is no number; if no step follows, it is the run's.
@@ -226,52 +228,13 @@ fn start_energy<const D: usize>(
     Ok(())
 }
 
-/// Takes in a sample of the energy.
-fn take_energy<const D: usize>(
-    scene: &Scene,
-    value: f64,
-    march: &mut March,
-    at: (usize, f64),
-) -> Result<(), RunError>
-where
-    Scene: InSpace<D>,
-{
-    refuse_no_energy(scene, value, at)?;
-    march.energy.sample(value);
-    Ok(())
-}
-
 /// Refuses an energy that is no number: of such a state nothing good comes.
-fn refuse_no_energy<const D: usize>(
-    scene: &Scene,
-    value: f64,
-    (step, dt): (usize, f64),
-) -> Result<(), RunError>
-where
-    Scene: InSpace<D>,
-{
+fn refuse_no_energy((scene, schedule): (&Scene, &Schedule), value: f64, step: usize) -> Result<(), RunError> {
     if value.is_finite() {
         return Ok(());
     }
-    let (critical, remedy) = limit::<D>(scene);
-    Err(RunError::NoEnergy {
-        step,
-        value,
-        dt,
-        critical,
-        remedy,
-    })
-}
-
-/// Largest stable step (s) of the initial layout, if it can be found, and what helps against a larger one.
-fn limit<const D: usize>(scene: &Scene) -> (Option<f64>, &'static str)
-where
-    Scene: InSpace<D>,
-{
-    match critical_step_in::<D>(scene).ok().flatten() {
-        Some(limit) => (Some(limit.step), remedy(limit.mechanism)),
-        None => (None, ""),
-    }
+    let advice = advice(scene, schedule, None);
+    Err(RunError::NoEnergy { step, value, advice })
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ pub use checkpoint::CheckpointError;
 pub use error::RunError;
 pub use fields::FieldValues;
 pub use invariants::Invariants;
-pub use limits::mechanism;
+pub use limits::{EnergyGain, mechanism};
 pub use norms::{ErrorNorms, Exact};
 pub use space::InSpace;
 pub use summary::{ConservationSummary, EnergySummary, MethodSummary, Summary};
@@ -53,8 +53,10 @@ use crate::stepper::{CriticalStep, MaterialFields, Simulation};
 pub struct Progress {
     /// Steps taken.
     pub step: usize,
-    /// Steps to take.
+    /// Steps to take, if they stay as they are: those of `step = "auto"` may change.
     pub steps: usize,
+    /// Size (s) of the last step taken, or of the first one.
+    pub dt: f64,
 }
 
 /// What a run in `D` dimensions leaves behind.
@@ -151,33 +153,43 @@ where
     Scene: InSpace<D>,
 {
     check_dimension::<D>(scene)?;
-    // Before the run's own simulation is there: the critical step takes one as large.
-    let schedule = Schedule::new(scene)?;
-    let open = |path: &Path| Checkpoint::open(path, scene, &schedule);
+    let open = |path: &Path| Checkpoint::open(path, scene);
+    let (mut schedule, mut simulation, from, written);
     let checkpoint = checkpoint.map(open).transpose()?;
     let resumed = checkpoint.is_some();
-    let mut warnings = limits::warnings(scene, &schedule, || critical_step_in(scene))?;
-    warnings.extend(warnings::warnings::<D>(scene, Some(&schedule))?);
-    let mut simulation = scene.build(schedule.dt)?;
-    let (from, written) = match checkpoint {
-        Some(checkpoint) => checkpoint.restore(simulation.as_mut())?,
-        None => (Milestone::default(), Vec::new()),
-    };
+    match checkpoint {
+        Some(checkpoint) => {
+            schedule = checkpoint.schedule();
+            simulation = scene.build(schedule.dt)?;
+            (from, written) = checkpoint.restore(simulation.as_mut())?;
+        }
+        None => {
+            (schedule, simulation) = begin(scene)?;
+            (from, written) = (Milestone::default(), Vec::new());
+        }
+    }
     let mut frames = Frames::new(scene, folder, written);
     if frames.are_wanted() {
         frames.bodies = initial::body_sizes::<D>(scene)?;
     }
     let removed = frames.clear(resumed);
-    warnings.extend(frames.warning());
+    let missing = frames.warning();
     let journey = Journey {
         scene,
-        schedule: &schedule,
         samples: ENERGY_SAMPLES,
         from,
     };
-    let march = march(&journey, simulation.as_mut(), &mut frames, progress)?;
+    let march = march(
+        &journey,
+        &mut schedule,
+        simulation.as_mut(),
+        &mut frames,
+        progress,
+    )?;
     let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, &march);
-    summary.warnings = warnings;
+    summary.warnings = limits::warnings(scene, &schedule, summary.energy_gain(scene));
+    summary.warnings.extend(warnings::warnings::<D>(scene)?);
+    summary.warnings.extend(missing);
     summary.removed = removed;
     let law = simulation.material_fields();
     let (particles, liquid) = simulation.into_particles();
@@ -201,6 +213,24 @@ where
         exact,
         files,
     })
+}
+
+/// The steps of a run from its start, and the simulation that takes them.
+fn begin<const D: usize>(scene: &Scene) -> Result<(Schedule, Box<dyn Simulation<D>>), RunError>
+where
+    Scene: InSpace<D>,
+{
+    let mut simulation = scene.build(0.0)?;
+    let schedule = Schedule::new(scene, simulation.as_mut())?;
+    // Velocities of a driven run start half a step early.
+    let simulation = match scene.driver()? {
+        Some(_) => {
+            drop(simulation);
+            scene.build(schedule.dt)?
+        }
+        None => simulation,
+    };
+    Ok((schedule, simulation))
 }
 
 fn check_dimension<const D: usize>(scene: &Scene) -> Result<(), RunError> {
@@ -234,16 +264,20 @@ fn step_loop_seconds_in<const D: usize>(scene: &Scene) -> Result<f64, RunError>
 where
     Scene: InSpace<D>,
 {
-    let schedule = Schedule::new(scene)?;
-    let mut simulation = scene.build(schedule.dt)?;
+    let (mut schedule, mut simulation) = begin(scene)?;
     let mut frames = Frames::new(scene, None, Vec::new());
     let journey = Journey {
         scene,
-        schedule: &schedule,
         samples: 1,
         from: Milestone::default(),
     };
-    let march = march(&journey, simulation.as_mut(), &mut frames, &mut |_| {})?;
+    let march = march(
+        &journey,
+        &mut schedule,
+        simulation.as_mut(),
+        &mut frames,
+        &mut |_| {},
+    )?;
     Ok(march.wall.as_secs_f64())
 }
 
@@ -261,10 +295,41 @@ fn warnings_in<const D: usize>(scene: &Scene) -> Result<Vec<String>, RunError>
 where
     Scene: InSpace<D>,
 {
-    warnings::warnings::<D>(scene, None)
+    warnings::warnings::<D>(scene)
 }
 
-/// Largest stable time step (s) of the scene's initial layout; `None` if nothing resists a motion.
+/// A stable step, and how far that is sure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StableStep {
+    /// The step.
+    pub limit: CriticalStep<f64>,
+    /// Whether it is proved for the layout; otherwise it was found by iteration on a sample of the particles.
+    pub proved: bool,
+}
+
+/// A step (s) that is stable in the scene's initial layout with the particles' own speeds, by
+/// [`Stepper::stiffness`](crate::stepper::Stepper::stiffness): what an automatic step takes its share of. `None` if nothing
+/// resists a motion.
+///
+/// # Errors
+/// If the scene cannot be set up.
+pub fn stable_step(scene: &Scene) -> Result<Option<StableStep>, RunError> {
+    in_dimension!(scene, stable_step_in(scene))
+}
+
+fn stable_step_in<const D: usize>(scene: &Scene) -> Result<Option<StableStep>, RunError>
+where
+    Scene: InSpace<D>,
+{
+    let mut simulation = scene.build(0.0)?;
+    let proved = simulation.stiffness_is_bound();
+    let stiffness = simulation.stiffness(&forcing(scene, 0.0, 1.0)?);
+    let limit = stiffness.and_then(|stiffness| simulation.largest_step(stiffness));
+    Ok(limit.map(|limit| StableStep { limit, proved }))
+}
+
+/// Largest stable time step (s) of the scene's initial layout, by power iteration on all particles; `None` if nothing resists
+/// a motion.
 ///
 /// # Errors
 /// If the scene cannot be set up.

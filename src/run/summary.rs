@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::limits::EnergyGain;
 use super::march::March;
 use super::norms::ErrorNorms;
 use super::schedule::Schedule;
@@ -126,8 +127,11 @@ pub struct Summary {
     /// Time (s) at which the velocities live that a run leaves behind: the middle of the last step. Positions
     /// and stresses are those of `time`.
     pub velocity_time: f64,
-    /// Size of a step (s).
+    /// Size of a step (s); of steps that were renewed their mean.
     pub time_step: f64,
+    /// Least and greatest size (s) of steps that were renewed with a result: absent where all are alike.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_step_range: Option<[f64; 2]>,
     /// Time of the step loop on the clock (s); of a resumed run that of the steps taken since.
     pub wall_seconds: f64,
     /// Particles times steps per second; of a resumed run those of the steps taken since.
@@ -180,6 +184,7 @@ impl Summary {
                 Some((phase, errors))
             })
             .collect();
+        let renewed = schedule.range[0] < schedule.range[1];
         let energy = march.energy;
         let rubs = scene.boundaries.iter().any(Boundary::rubs);
         // Of next to nothing nothing is a finite multiple.
@@ -193,7 +198,12 @@ impl Summary {
             steps: schedule.steps,
             time: schedule.end,
             velocity_time: schedule.velocity_time(schedule.steps, scene.time.half_kick),
-            time_step: schedule.dt,
+            time_step: if renewed {
+                schedule.end / schedule.steps as f64
+            } else {
+                schedule.dt
+            },
+            time_step_range: renewed.then_some(schedule.range),
             wall_seconds,
             particle_steps_per_second,
             bytes_per_particle: simulation.bytes_per_particle(),
@@ -213,5 +223,10 @@ impl Summary {
             warnings: Vec::new(),
             removed: Vec::new(),
         }
+    }
+
+    /// By how much the energy rose although nothing of `scene` gives any; `None` if it did not, or may.
+    pub fn energy_gain(&self, scene: &Scene) -> Option<EnergyGain> {
+        EnergyGain::of(scene, self.energy.highest_ratio?)
     }
 }

@@ -11,19 +11,15 @@ mod walls;
 pub(super) use strain::small_strain;
 
 use super::error::RunError;
-use super::schedule::Schedule;
 use super::space::InSpace;
 use crate::scene::{Expression, Scene};
 
-/// Warnings of a scene whose steps may be known.
-pub(super) fn warnings<const D: usize>(
-    scene: &Scene,
-    schedule: Option<&Schedule>,
-) -> Result<Vec<String>, RunError>
+/// Warnings of a scene.
+pub(super) fn warnings<const D: usize>(scene: &Scene) -> Result<Vec<String>, RunError>
 where
     Scene: InSpace<D>,
 {
-    let mut found = numbers::warnings::<D>(scene, schedule)?;
+    let mut found = numbers::warnings::<D>(scene)?;
     found.extend(walls::warnings::<D>(scene)?);
     found.extend(ends::warnings::<D>(scene)?);
     Ok(found)

@@ -130,6 +130,14 @@ impl Scene {
         self
     }
 
+    /// Fraction of the largest stable step that an automatic step takes: as told, or that of the method.
+    pub fn safety(&self) -> f64 {
+        match self.time.step {
+            StepSize::Auto { safety: Some(safety) } => safety,
+            _ => self.method.default_safety(),
+        }
+    }
+
     /// Number of axes.
     pub fn dimension(&self) -> usize {
         self.grid.cells.len()

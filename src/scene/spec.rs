@@ -22,10 +22,10 @@ pub struct GridSpec {
 pub enum StepSize {
     /// Always the same (s).
     Fixed(f64),
-    /// A fraction of the largest stable step.
+    /// A fraction of the largest stable step, renewed as the run goes.
     Auto {
-        /// The fraction, above 0 and at most 1; default 0.5.
-        safety: f64,
+        /// The fraction, above 0 and at most 1; that of the method unless told ([`Scene::safety`](super::Scene::safety)).
+        safety: Option<f64>,
     },
 }
 
@@ -70,6 +70,24 @@ pub struct Method {
 }
 
 impl Method {
+    /// Fraction of the largest stable step that keeps the energy of bodies whose particles cross cells within some per cent
+    /// (`docs/stability.md`). Crossing hat functions gives every particle a small kick of no sign, the gradient's jump for a part
+    /// of a step, that shrinks with the step alone.
+    pub fn default_safety(&self) -> f64 {
+        let hats = matches!(self.basis, Basis::Linear | Basis::BSpline { degree: 1 });
+        match self.reconstruction {
+            ReconstructionKind::Shepard if self.subpoints == 1 => {
+                if hats {
+                    0.1
+                } else {
+                    0.25
+                }
+            }
+            // Of the largest stable step itself and no bound of it.
+            _ => 0.4,
+        }
+    }
+
     /// Basis, reconstruction and sub-points alone.
     pub fn method(&self) -> method::Method {
         method::Method {

@@ -37,7 +37,7 @@ fn read(overrides: &[&str]) -> Result<Scene, SceneError> {
 fn what_is_not_said_has_its_default() {
     let scene = read(&[]).unwrap();
     assert_eq!(scene.dimension(), 1);
-    assert_eq!(scene.time.step, StepSize::Auto { safety: 0.5 });
+    assert_eq!(scene.time.step, StepSize::Auto { safety: None });
     assert_eq!(scene.method.basis, Basis::BSpline { degree: 2 });
     assert_eq!(scene.method.velocity_mass, VelocityMass::Lumped);
     assert_eq!(scene.method.scalar, ScalarKind::F64);
@@ -180,7 +180,7 @@ fn bodies_boundaries_and_loads_are_read() {
         (scene.output.particles, scene.output.every),
         (ParticleOutput::None, 5)
     );
-    assert_eq!(scene.time.step, StepSize::Auto { safety: 1.0 });
+    assert_eq!(scene.time.step, StepSize::Auto { safety: Some(1.0) });
 }
 
 /// Numbers of the journal, section 6.

@@ -20,6 +20,7 @@ mod acceleration;
 mod advance;
 mod balance;
 mod body_forces;
+mod bound;
 mod by_four;
 mod cell_sums;
 mod checkpoint;

@@ -71,6 +71,18 @@ pub trait Simulation<const D: usize> {
     /// See [`Stepper::into_critical_step`].
     fn into_critical_step(self: Box<Self>, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>>;
 
+    /// See [`Stepper::stiffness_bound`].
+    fn stiffness_bound(&mut self, forcing: &Forcing<f64, D>) -> f64;
+
+    /// See [`Stepper::stiffness`].
+    fn stiffness(&mut self, forcing: &Forcing<f64, D>) -> Option<f64>;
+
+    /// Whether [`Simulation::stiffness`] is a proved bound, which costs about a step, and no iteration on a sample of the particles.
+    fn stiffness_is_bound(&self) -> bool;
+
+    /// See [`Stepper::largest_step`].
+    fn largest_step(&self, stiffness: f64) -> Option<CriticalStep<f64>>;
+
     /// See [`Stepper::save`].
     ///
     /// # Errors
@@ -192,6 +204,22 @@ where
 
     fn into_critical_step(self: Box<Self>, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>> {
         Stepper::into_critical_step(*self, &cast_forcing(forcing)).map(cast_critical)
+    }
+
+    fn stiffness_bound(&mut self, forcing: &Forcing<f64, D>) -> f64 {
+        self.stiffness_bound(&cast_forcing(forcing)).primal()
+    }
+
+    fn stiffness(&mut self, forcing: &Forcing<f64, D>) -> Option<f64> {
+        self.stiffness(&cast_forcing(forcing)).map(T::primal)
+    }
+
+    fn stiffness_is_bound(&self) -> bool {
+        R::PLAIN
+    }
+
+    fn largest_step(&self, stiffness: f64) -> Option<CriticalStep<f64>> {
+        self.largest_step(T::lit(stiffness)).map(cast_critical)
     }
 
     fn save(&self, out: &mut dyn Write) -> io::Result<()> {

@@ -171,13 +171,169 @@ fn the_default_command_compares_all_methods_and_draws_them() {
 
 #[test]
 fn check_names_the_largest_stable_step_and_what_limits_it() {
-    let (output, _) = materialpoint("check", &["check", "vibrating-bar-large", "--json"]);
+    let (output, _) = materialpoint("check", &["check", "vibrating-bar-large", "--json", "--sharp"]);
     let check: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(check["critical_by"], "iteration");
+    assert_eq!(check["steps"], 1000.0);
     // In units of h/c; `convergence::critical_step` confirms such figures by bisection.
     let critical = check["critical_time_step"].as_f64().unwrap() / (0.05 / 20.0_f64.sqrt());
     assert!((critical - 1.39).abs() < 0.01, "{critical}");
     assert!(check["mechanism"].as_str().unwrap().contains("wave"));
     assert_eq!(check["stable"], true);
+    // Published TLS has no bound: a sample of the particles is iterated on, here all of them. The particles' speed, 0.8 m/s, counts:
+    // 1 / dt = c / (1.39 h) + v / h.
+    let (output, _) = materialpoint("check-sample", &["check", "vibrating-bar-large", "--json"]);
+    let check: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(check["critical_by"], "sample");
+    let with_speed = check["critical_time_step"].as_f64().unwrap() / 0.05;
+    let c = 20.0_f64.sqrt();
+    assert!(
+        (1.0 / with_speed - c / critical - 0.8).abs() < 0.01,
+        "{with_speed}"
+    );
+}
+
+/// Linear functions along one axis: h / (c + |v|) = 0.05 / (4.472 + 0.8), by the bound. The default takes a tenth of it.
+#[test]
+fn check_counts_the_steps_and_refuses_an_unstable_one() {
+    let plain = [
+        "check",
+        "vibrating-bar-large",
+        "--set",
+        "method={basis='linear', reconstruction='shepard'}",
+    ];
+    let (output, _) = materialpoint(
+        "check-auto",
+        &[&plain[..], &["--set", "time.step=auto", "--json"]].concat(),
+    );
+    let check: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(check["critical_by"], "bound");
+    let step = 0.05 / (20.0_f64.sqrt() + 0.8);
+    let found = check["critical_time_step"].as_f64().unwrap();
+    assert!((found / step - 1.0).abs() < 0.01, "{found} {step}");
+    assert_eq!(check["steps"], (0.1 / (0.1 * found)).ceil());
+    let (output, _) = materialpoint("check-text", &[&plain[..], &["--set", "time.step=auto"]].concat());
+    let page = text(&output.stdout);
+    assert!(page.contains("by a bound") && page.contains("  steps "), "{page}");
+    // Three times the wave's step: no layout bears that.
+    let fixed = ["--set", "time.step=0.034", "--set", "time.end=1.0", "--json"];
+    let (output, _) = materialpoint("check-unstable", &[&plain[..], &fixed].concat());
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(
+        message.contains("time.step = 3.400e-2 s is above the largest stable step"),
+        "{message}"
+    );
+    let check: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (&check["stable"], &check["critical_by"]),
+        (&false.into(), &"iteration".into())
+    );
+    // 1e15 s are 1e17 steps and more.
+    for command in ["check", "run"] {
+        let set = ["--set", "time={step='auto', end=1e15}", "--quiet"];
+        let (output, _) = materialpoint("check-endless", &[&[command], &plain[1..], &set].concat());
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{command}: {message}");
+        assert!(message.contains("expected at most 1e12"), "{command}: {message}");
+    }
+}
+
+/// Two free particles that part at 0.9 of the wave's speed: a step of the size of a cell's crossing gives energy out of nothing. The
+/// files are there, and the command says that they are no result.
+#[test]
+fn a_run_that_made_energy_writes_its_files_and_ends_with_status_three() {
+    let arguments = [
+        "run",
+        "vibrating-bar-large",
+        "--set",
+        "method={basis='linear', reconstruction='shepard'}",
+        "--set",
+        "time={step=0.0105, end=2.0}",
+        "--json",
+    ];
+    let (output, folder) = materialpoint("gain", &arguments);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(
+        message.contains("the energy rose to") && message.contains("smaller time.step"),
+        "{message}"
+    );
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(
+        summary["energy"]["highest_ratio"].as_f64().unwrap() > 1.1,
+        "{summary}"
+    );
+    let warnings = summary["warnings"].as_array().unwrap();
+    assert!(
+        warnings
+            .iter()
+            .any(|warning| warning.as_str().unwrap().contains("the energy rose"))
+    );
+    assert!(folder.join("particles.csv").exists());
+    // Said once.
+    assert_eq!(message.matches("the energy rose").count(), 1, "{message}");
+}
+
+#[test]
+fn flags_of_a_study_are_refused_elsewhere_by_name() {
+    for (flag, value) in [
+        ("--cells", "5,10"),
+        ("--methods", "linear+shepard"),
+        ("--repeat", "2"),
+    ] {
+        for command in ["run", "check"] {
+            let after = materialpoint("flags", &[command, "vibrating-bar-small", flag, value]).0;
+            let before = materialpoint("flags", &[flag, value, command, "vibrating-bar-small"]).0;
+            for output in [after, before] {
+                let message = text(&output.stderr);
+                assert_eq!(output.status.code(), Some(2), "{message}");
+                assert!(message.contains(flag), "{message}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_list_is_json_where_that_is_asked_for() {
+    let output = Command::new(env!("CARGO_BIN_EXE_materialpoint"))
+        .args(["list", "--json"])
+        .output()
+        .unwrap();
+    let list: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for (key, name) in [
+        ("bases", "linear"),
+        ("reconstructions", "relaxed-taylor"),
+        ("laws", "neo-hookean"),
+        ("phases", "2"),
+        ("references", "vibrating-bar"),
+    ] {
+        let entries = list[key].as_array().unwrap();
+        assert!(
+            entries
+                .iter()
+                .any(|entry| entry["name"] == name && entry["about"].is_string()),
+            "{key}"
+        );
+    }
+    assert!(list["scenes"].as_array().unwrap().contains(&"dam-break".into()));
+    assert!(
+        list["methods"]
+            .as_array()
+            .unwrap()
+            .contains(&"bspline+relaxed-taylor".into())
+    );
+}
+
+#[test]
+fn a_period_of_output_beyond_the_run_is_warned_of() {
+    let arguments = ["run", "vibrating-bar-small", "--json", "--set", "output.every=20"];
+    let (output, _) = materialpoint("period", &arguments);
+    let message = text(&output.stderr);
+    assert!(
+        message.contains("output.every = 20 is more than the 19 steps"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -254,6 +410,7 @@ fn a_step_above_the_critical_one_is_warned_of() {
     assert_eq!(check["mechanism"], "the drag between solid and liquid (explicit)");
     assert_eq!(check["unknowns_per_dof"], 2);
     assert_eq!(check["stable"], false);
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
     let (output, _) = materialpoint("implicit-check", &["check", "consolidation", "--json"]);
     let check: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let mechanism = check["mechanism"].as_str().unwrap();

@@ -99,8 +99,8 @@ fn bound_steps(scene: &mut Scene) -> Result<(), TestCaseError> {
         return Ok(());
     };
     prop_assert!(critical.step > 0.0 && critical.step.is_finite(), "{critical:?}");
-    if let StepSize::Auto { safety } = scene.time.step {
-        scene.time.end = scene.time.end.min(MOST_STEPS * safety * critical.step);
+    if let StepSize::Auto { .. } = scene.time.step {
+        scene.time.end = scene.time.end.min(MOST_STEPS * scene.safety() * critical.step);
     }
     Ok(())
 }

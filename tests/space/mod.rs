@@ -1,5 +1,6 @@
 //! Scenes in two and three dimensions.
 
+mod automatic_step;
 mod body;
 mod cantilever;
 mod collapse;

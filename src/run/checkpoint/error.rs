@@ -53,16 +53,6 @@ pub enum CheckpointError {
         /// Its value now.
         here: Box<str>,
     },
-    /// Written by a run that took other steps.
-    #[error("the checkpoint `{}` is of a run of {there} s a step, and time.step = \"auto\" finds {here} s now; resume with the program and on the kind of machine that wrote it, or give the step as a number", path.display())]
-    OtherStep {
-        /// The file asked for.
-        path: PathBuf,
-        /// Size of the steps when it was written (s).
-        there: f64,
-        /// Size of the steps now (s).
-        here: f64,
-    },
     /// Beyond the end of the scene.
     #[error("the checkpoint `{}` was written after {done} steps, and the run has {steps} now; give a later time.end", path.display())]
     Beyond {

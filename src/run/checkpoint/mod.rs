@@ -19,7 +19,7 @@ use super::schedule::Schedule;
 use crate::error::RestoreError;
 use crate::output::{OutputError, SeriesFrame};
 use crate::scene::{Scene, StepSize};
-use crate::stepper::Simulation;
+use crate::stepper::{CriticalStep, Mechanism, Simulation};
 use file::{Content, Sealed};
 use identity::{Difference, difference, identity};
 
@@ -55,6 +55,7 @@ pub(super) fn write<const D: usize>(
 pub(super) struct Checkpoint {
     path: PathBuf,
     content: Content,
+    schedule: Schedule,
     milestone: Milestone,
     frames: Vec<SeriesFrame>,
 }
@@ -64,7 +65,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// If the file is none, is damaged or belongs to another run.
-    pub(super) fn open(path: &Path, scene: &Scene, schedule: &Schedule) -> Result<Self, CheckpointError> {
+    pub(super) fn open(path: &Path, scene: &Scene) -> Result<Self, CheckpointError> {
         let mut content = file::open(path)?;
         let read = |source: io::Error| CheckpointError::Read {
             path: path.into(),
@@ -81,14 +82,25 @@ impl Checkpoint {
         }
         let past = take_schedule(&mut content).map_err(read)?;
         let milestone = take_milestone(&mut content).map_err(read)?;
-        check_steps(path, milestone.done, &past, (schedule, scene.time.step))?;
+        // Automatic steps go on as they were; the end is that of then.
+        let schedule = match scene.time.step {
+            StepSize::Fixed(_) => past.with_end(scene.time.end),
+            StepSize::Auto { .. } => past,
+        };
+        check_steps(path, milestone.done, &past, &schedule)?;
         let frames = take_frames(&mut content).map_err(read)?;
         Ok(Self {
             path: path.into(),
             content,
+            schedule,
             milestone,
             frames,
         })
+    }
+
+    /// The steps of the run.
+    pub(super) fn schedule(&self) -> Schedule {
+        self.schedule
     }
 
     /// Gives `simulation` the state; returns how far the run is and the frames written so far.
@@ -116,21 +128,8 @@ impl Checkpoint {
 }
 
 /// Refuses a checkpoint whose steps are not those that this run would have taken.
-fn check_steps(
-    path: &Path,
-    done: usize,
-    past: &Schedule,
-    (now, step): (&Schedule, StepSize),
-) -> Result<(), CheckpointError> {
+fn check_steps(path: &Path, done: usize, past: &Schedule, now: &Schedule) -> Result<(), CheckpointError> {
     let path = || path.to_owned();
-    let automatic = matches!(step, StepSize::Auto { .. });
-    if past.dt.to_bits() != now.dt.to_bits() || automatic && past != now {
-        return Err(CheckpointError::OtherStep {
-            path: path(),
-            there: past.dt,
-            here: now.dt,
-        });
-    }
     if done > now.steps {
         return Err(CheckpointError::Beyond {
             path: path(),
@@ -154,17 +153,59 @@ fn check_steps(
 }
 
 fn put_schedule(out: &mut impl Write, schedule: &Schedule) -> io::Result<()> {
-    let Schedule { steps, dt, end } = schedule;
-    put_count(out, *steps)?;
-    put_number(out, *dt)?;
-    put_number(out, *end)
+    let Schedule {
+        steps,
+        dt,
+        end,
+        since: (first, start),
+        before,
+        range: [least, most],
+        stiffness,
+        limit,
+        exceeded: (when, stable),
+    } = *schedule;
+    put_count(out, steps)?;
+    put_count(out, first)?;
+    let numbers = [dt, end, start, before, least, most, stiffness, when];
+    numbers
+        .into_iter()
+        .try_for_each(|number| put_number(out, number))?;
+    put_limit(out, limit)?;
+    put_limit(out, stable)
+}
+
+fn put_limit(out: &mut impl Write, limit: CriticalStep<f64>) -> io::Result<()> {
+    put_number(out, limit.step)?;
+    put_count(out, usize::from(limit.mechanism == Mechanism::Drag))
+}
+
+fn take_limit(from: &mut impl Read) -> io::Result<CriticalStep<f64>> {
+    Ok(CriticalStep {
+        step: take_number(from)?,
+        mechanism: match take_count(from)? {
+            0 => Mechanism::Wave,
+            _ => Mechanism::Drag,
+        },
+    })
 }
 
 fn take_schedule(from: &mut impl Read) -> io::Result<Schedule> {
+    let (steps, first) = (take_count(from)?, take_count(from)?);
+    let mut numbers = [0.0; 8];
+    for number in &mut numbers {
+        *number = take_number(from)?;
+    }
+    let [dt, end, start, before, least, most, stiffness, when] = numbers;
     Ok(Schedule {
-        steps: take_count(from)?,
-        dt: take_number(from)?,
-        end: take_number(from)?,
+        steps,
+        dt,
+        end,
+        since: (first, start),
+        before,
+        range: [least, most],
+        stiffness,
+        limit: take_limit(from)?,
+        exceeded: (when, take_limit(from)?),
     })
 }
 

@@ -3,9 +3,8 @@
 use super::super::dispatch::grid;
 use super::super::error::RunError;
 use super::super::initial::keep;
-use super::super::schedule::Schedule;
 use super::range;
-use crate::scene::{BoundaryKind, Expression, Law, ParticleOutput, Phases, Scene, SpaceLaw};
+use crate::scene::{BoundaryKind, Expression, Law, Phases, Scene, SpaceLaw};
 
 /// A coefficient of friction that is rather an angle in degrees: the wall would hold on a slope of 79
 /// degrees, which no dry pair of materials does (rubber on rock reaches 2 or 3), while walls of soil or steel
@@ -20,16 +19,12 @@ const LEAST_DRAINED: f64 = 1e-2;
 /// Times that a wave crosses the bodies in a run that is about more than waves.
 const LEAST_CROSSINGS: f64 = 10.0;
 
-pub(super) fn warnings<const D: usize>(
-    scene: &Scene,
-    schedule: Option<&Schedule>,
-) -> Result<Vec<String>, RunError> {
+pub(super) fn warnings<const D: usize>(scene: &Scene) -> Result<Vec<String>, RunError> {
     let mut found = friction(scene);
     found.extend(friction_angle(scene));
     found.extend(load_over_stiffness(scene)?);
     found.extend(permeability::<D>(scene)?);
     found.extend(single_particles::<D>(scene)?);
-    found.extend(schedule.and_then(|schedule| every(scene, schedule)));
     Ok(found)
 }
 
@@ -177,23 +172,4 @@ fn single_particles<const D: usize>(scene: &Scene) -> Result<Vec<String>, RunErr
         }
     }
     Ok(found)
-}
-
-fn every(scene: &Scene, schedule: &Schedule) -> Option<String> {
-    let output = &scene.output;
-    let asked = [
-        (
-            "output.every",
-            output.every,
-            output.particles != ParticleOutput::None,
-        ),
-        ("output.checkpoint_every", output.checkpoint_every, true),
-    ];
-    let (key, every, _) = asked
-        .into_iter()
-        .find(|&(_, every, wanted)| wanted && every > schedule.steps)?;
-    Some(format!(
-        "{key} = {every} is more than the {} steps of the run: nothing is written on the way",
-        schedule.steps
-    ))
 }

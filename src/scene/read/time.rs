@@ -27,7 +27,7 @@ fn step(section: &Section<'_>) -> Result<StepSize, SceneError> {
     let safety = section.optional("safety");
     match item.as_text() {
         Some("auto") => Ok(StepSize::Auto {
-            safety: safety.map_or(Ok(0.5), |item| self::safety(&item))?,
+            safety: safety.map(|item| self::safety(&item)).transpose()?,
         }),
         Some(_) => Err(item.not_allowed(expected)),
         None => {

@@ -50,14 +50,45 @@ impl<T: Scalar> Coupled<T> {
         })
     }
 
-    fn largest_step(&self, geometry: T, drag: T) -> Option<T> {
+    /// A step of at most [`Coupled::critical_step`], without a search.
+    ///
+    /// With `mu` the largest eigenvalue of `M^-1 C` and `r` that of `M^-1 D`, `4 M - 2 dt D - dt^2 g C` is positive definite where
+    /// `2 dt r + dt^2 g mu <= 4`. Drag at the end of the step only adds to it. Exact where one of both limits alone; where they
+    /// are equal 0.62 of it at least.
+    pub(in super::super) fn stable_step(&self, geometry: T) -> Option<CriticalStep<T>> {
+        let (two, four) = (T::lit(2.0), T::lit(4.0));
+        let [liquid, solid] = self.mass;
+        let c = self.stiffness();
+        let (a, b) = (c[(0, 0)] / liquid, c[(1, 1)] / solid);
+        let (mean, half) = ((a + b) / two, (a - b) / two);
+        let mu = mean + (half * half + c[(0, 1)] * c[(0, 1)] / (liquid * solid)).sqrt();
+        let wave = geometry * mu;
+        let drag = match self.implicit {
+            true => T::zero(),
+            false => self.drag * (T::one() / liquid + T::one() / solid),
+        };
+        // The positive root of 2 dt r + dt^2 w = 4, without the difference of equals.
+        let step = four / (drag + (drag * drag + four * wave).sqrt());
+        let mechanism = match drag * drag > wave {
+            true => Mechanism::Drag,
+            false => Mechanism::Wave,
+        };
+        (step > T::zero() && step.is_finite()).then_some(CriticalStep { step, mechanism })
+    }
+
+    /// `C`, for a unit of `geometry`.
+    fn stiffness(&self) -> Matrix2<T> {
         let n = self.porosity;
         let shares = [n, T::one() - n];
-        let (two, four) = (T::lit(2.0), T::lit(4.0));
-        let stiffness = Matrix2::from_fn(|i, j| {
+        Matrix2::from_fn(|i, j| {
             let skeleton = if i == 1 && j == 1 { self.modulus } else { T::zero() };
             self.liquid_stiffness * shares[i] * shares[j] + skeleton
-        });
+        })
+    }
+
+    fn largest_step(&self, geometry: T, drag: T) -> Option<T> {
+        let (two, four) = (T::lit(2.0), T::lit(4.0));
+        let stiffness = self.stiffness();
         let sign = if self.implicit { T::one() } else { -T::one() };
         let stable = |dt: T| {
             let d = sign * two * dt * drag;
@@ -84,5 +115,38 @@ impl<T: Scalar> Coupled<T> {
             }
         }
         (low > T::zero()).then_some(low)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Soils from gravel to clay, grids from fine to coarse: never above the search's result, which bisects the determinant itself,
+    /// and no less than the golden section of it.
+    #[test]
+    fn the_closed_form_stays_below_the_search() {
+        for exponent in 0..12 {
+            for geometry in [1e-2, 1.0, 1e4, 1e8] {
+                for (implicit, modulus) in [(false, 1e5), (false, 1e9), (true, 1e5), (true, 1e9)] {
+                    let soil = Coupled {
+                        mass: [300.0, 1855.0],
+                        drag: 0.3 * 0.3 * 1e4 * 10.0_f64.powi(exponent),
+                        liquid_stiffness: 2.2e9 / 0.3,
+                        porosity: 0.3,
+                        modulus,
+                        implicit,
+                    };
+                    let (exact, bound) = (
+                        soil.critical_step(geometry).unwrap(),
+                        soil.stable_step(geometry).unwrap(),
+                    );
+                    let ratio = bound.step / exact.step;
+                    assert!(ratio <= 1.0 + 1e-9, "{soil:?}: {ratio}");
+                    // Drag at the end of the step helps, and the closed form does not count on it.
+                    assert!(implicit || ratio > 0.6, "{soil:?}: {ratio}");
+                }
+            }
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{BAR, assert_same, resume, scene, with_checkpoint};
 use crate::method::Method;
-use crate::run::InSpace;
+use crate::run::{InSpace, run_in};
 use crate::scene::Scene;
 
 /// A block that swirls through cells and slides over a rough floor, and ends before published TLS loses its free sides; what
@@ -122,6 +122,43 @@ fn two_phases_are_resumed() {
                 check::<1>("resume-soil", Scene::builtin(name).unwrap(), method, &set);
             }
         }
+    }
+}
+
+/// Water that swings and stiffens: the step is renewed every 16 steps and the layout looked at every 64, so that checkpoints at
+/// multiples of 7, of 16 and of 64 find it between two looks and right before one.
+#[test]
+fn a_run_that_renews_its_step_is_resumed() {
+    let text = r#"
+        title = "Tube"
+        grid = { min = [0, 0], max = [1, 0.1], cells = [20, 2] }
+        time = { step = "auto", safety = 0.4, end = 0.12 }
+        method = { basis = "linear", reconstruction = "shepard" }
+        output = { particles = "none" }
+        [material]
+        strain = "large"
+        law.newtonian-fluid = { bulk_modulus = 1e5, gamma = 7.0, viscosity = 0.0 }
+        density = 1000
+        [[body]]
+        min = [0, 0]
+        max = [1, 0.1]
+        particles_per_cell = [2, 2]
+        velocity = ["-2*sin(2*pi*x)", "0"]
+        [[boundary]]
+        face = "x-min"
+        roller = true
+        [[boundary]]
+        face = "x-max"
+        roller = true
+    "#;
+    for every in [7, 16, 64] {
+        let scene = scene(text, &[&format!("output.checkpoint_every={every}")]);
+        let (_scratch, path, whole) = with_checkpoint::<2>(&format!("resume-renewed-{every}"), &scene);
+        assert!(whole.summary.time_step_range.is_some() && whole.summary.steps > 2 * every);
+        assert_same(&resume::<2>(&scene, &path).unwrap(), &whole, "renewed");
+        // Neither the files nor the checkpoints of a run change its steps.
+        let alone = run_in::<2>(&super::scene(text, &[]), None, &mut |_| {}).unwrap();
+        assert_same(&alone, &whole, "alone");
     }
 }
 
