@@ -1,8 +1,9 @@
 //! What limits the time step, in words, and what is to be warned of.
 
 use super::error::RunError;
+use super::method_warnings::method_warnings;
 use super::schedule::Schedule;
-use crate::scene::{Basis, Phases, ReconstructionKind, Scene, StepSize};
+use crate::scene::{Phases, ReconstructionKind, Scene, StepSize};
 use crate::stepper::{CriticalStep, Mechanism};
 
 /// The mechanism that limits the step of a scene.
@@ -44,7 +45,7 @@ pub(super) fn warnings(
     schedule: &Schedule,
     critical: impl FnOnce() -> Result<Option<CriticalStep<f64>>, RunError>,
 ) -> Result<Vec<String>, RunError> {
-    let mut warnings: Vec<String> = method_warning(scene).into_iter().collect();
+    let mut warnings: Vec<String> = method_warnings(scene);
     // "auto" stays below by itself.
     if let StepSize::Fixed(_) = scene.time.step
         && let Some(limit) = critical()?
@@ -59,20 +60,4 @@ pub(super) fn warnings(
         ));
     }
     Ok(warnings)
-}
-
-/// A warning of a combination of method and model that cannot be relied on, if the scene asks for one: `docs/two-phase.md` has
-/// the figures.
-fn method_warning(scene: &Scene) -> Option<String> {
-    let Phases::Two(_) = scene.material.phases else {
-        return None;
-    };
-    let method = &scene.method;
-    let spline = method.reconstruction == ReconstructionKind::Spline;
-    let unusable = spline && method.basis == Basis::Linear && scene.material.law.large_strain();
-    unusable.then(|| {
-        "method: the cubic spline with linear functions does not bear the load of a surface that moves through cells; take \
-         shepard or taylor, or another basis"
-            .to_owned()
-    })
 }

@@ -10,6 +10,7 @@ mod initial;
 mod limits;
 mod loads;
 mod march;
+mod method_warnings;
 mod norms;
 mod particle_table;
 mod rate_law;
