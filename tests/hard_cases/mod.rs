@@ -15,4 +15,5 @@ mod long_runs;
 mod partly_filled;
 mod positive_density;
 mod precision;
+mod through_scenes;
 mod weak_dof;

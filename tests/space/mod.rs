@@ -11,6 +11,7 @@ mod manufactured;
 mod patch;
 mod rotation;
 mod saturated;
+mod shape;
 mod slope;
 mod translation;
 mod vortex;
