@@ -57,6 +57,19 @@ pub enum SetupError {
         "relaxed Taylor least squares know one phase only beyond one axis so far; with a liquid that flows use Shepard or Taylor"
     )]
     OnePhaseOnly,
+    /// A basis whose functions bend within a cell.
+    #[error(
+        "the basis is no polynomial of degree {degree} along axis {axis} in cell {cell}: beyond one axis relaxed Taylor least \
+         squares need one in each cell; use Shepard or Taylor, or a basis that is (linear, dual domain, B-splines)"
+    )]
+    NotPolynomial {
+        /// Axis along which it bends.
+        axis: usize,
+        /// Index of the cell along it.
+        cell: u32,
+        /// What [`degree`](crate::basis::BasisFamily::degree) says.
+        degree: usize,
+    },
     /// A particle outside the grid.
     #[error("particle {particle} starts at {position:?}, outside the grid")]
     Outside {

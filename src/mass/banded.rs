@@ -123,13 +123,17 @@ impl<T: Scalar> Banded<T> {
     pub fn lump_weak(&mut self, least: T) {
         for i in 0..self.order {
             let band = i.saturating_sub(self.half_band)..(i + self.half_band + 1).min(self.order);
-            let sum = band
-                .clone()
-                .fold(T::zero(), |sum, j| sum + self.rows[self.at(i.max(j), i.min(j))]);
+            let sum = band.fold(T::zero(), |sum, j| sum + self.rows[self.at(i.max(j), i.min(j))]);
             if self.rows[self.at(i, i)] < least * sum {
-                band.filter(|&j| j != i).for_each(|j| self.lump_entry(i, j));
+                self.lump(i);
             }
         }
+    }
+
+    /// Lumps the row of a DOF.
+    pub(crate) fn lump(&mut self, i: usize) {
+        let band = i.saturating_sub(self.half_band)..(i + self.half_band + 1).min(self.order);
+        band.filter(|&j| j != i).for_each(|j| self.lump_entry(i, j));
     }
 
     fn lump_entry(&mut self, i: usize, j: usize) {

@@ -153,15 +153,17 @@ impl<T, const D: usize> Point<T, D> {
     }
 }
 
-/// How far material fills a cell.
+/// How far the particles of a cell determine its functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filling {
-    /// It does, as far as its functions can tell.
+    /// They fill it, as far as its functions can tell.
     Full,
-    /// It ends within; its particles still determine a fit.
+    /// They fill a part, or see all functions but squares.
     Part,
-    /// It ends within, and they do not.
+    /// They do not, but better cells are near.
     Few,
+    /// Neither do those near it.
+    Alone,
 }
 
 /// Parts of a cell that are crossed in a step.
@@ -319,8 +321,9 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         const { assert!(!Self::RELAXES, "RELAXES wants an own `relax`") };
     }
 
-    /// How far the material fills the occupied cell at `place` in the list of those. Beyond one dimension the stepper ties the
-    /// functions of cells that are not full to those of the next ones ([`crate::mass::Penalty`]). Only asked where
+    /// How far the particles of the occupied cell at `place` in the list of those determine its functions. Beyond one dimension the
+    /// stepper ties the functions of cells that are not full to those of the next ones ([`crate::mass::Penalty`]); those of cells that
+    /// are alone it lumps. Only asked where
     /// [`Reconstruction::PARTICLE_MATRIX`].
     fn filling(&self, _place: usize) -> Filling {
         const {

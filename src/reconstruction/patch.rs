@@ -43,23 +43,25 @@ impl<T: Scalar, const D: usize> Patch<T, D> {
         }
     }
 
-    /// What `cuts` leave of the cell with number `cell`. A cut that would leave nothing is not made.
+    /// What `cuts` leave of the cell with number `cell`. Cuts that would leave nothing are not made: neither is where one body ends
+    /// below the start of another.
     pub fn cut(grid: &Grid<T, D>, cell: usize, cuts: &[Cut<T>]) -> Self {
         let mut patch = Self::whole(grid, cell);
-        let two = T::lit(2.0);
+        let ends = [patch.centre[0] - patch.half[0], patch.centre[0] + patch.half[0]];
+        let [mut low, mut high] = ends;
         for cut in cuts.iter().filter(|cut| cut.cell as usize == cell) {
-            let (mut low, mut high) = (patch.centre[0] - patch.half[0], patch.centre[0] + patch.half[0]);
-            match cut.side {
-                Side::Min => low = low.max(cut.position),
-                Side::Max => high = high.min(cut.position),
-            }
-            let half = (high - low) / two;
             // Also refuses a surface that is not a number.
-            if half > T::zero() {
-                patch.centre[0] = (low + high) / two;
-                patch.half[0] = half;
-                patch.inverse_half[0] = T::one() / half;
+            match cut.side {
+                Side::Min if cut.position < ends[1] => low = low.max(cut.position),
+                Side::Max if cut.position > ends[0] => high = high.min(cut.position),
+                Side::Min | Side::Max => {}
             }
+        }
+        let (two, half) = (T::lit(2.0), (high - low) / T::lit(2.0));
+        if half > T::zero() && [low, high] != ends {
+            patch.centre[0] = (low + high) / two;
+            patch.half[0] = half;
+            patch.inverse_half[0] = T::one() / half;
         }
         patch
     }
@@ -102,6 +104,23 @@ mod tests {
         assert_relative_eq!(patch.local(&vector![1.2])[0], 1.0, max_relative = 1e-14);
         assert_relative_eq!(patch.position(&vector![-1.0])[0], 1.0, max_relative = 1e-14);
         assert_eq!(Patch::cut(&grid, 1, &cuts), Patch::whole(&grid, 1));
+    }
+
+    /// Whichever is named first.
+    #[test]
+    fn two_bodies_that_end_in_a_cell_leave_it_whole() {
+        let grid = Grid::new(vector![0.0], vector![2.0], [4]).unwrap();
+        let cut = |side, position| Cut {
+            cell: 2,
+            side,
+            position,
+        };
+        let cuts = [cut(Side::Max, 1.2), cut(Side::Min, 1.3)];
+        for cuts in [cuts, [cuts[1], cuts[0]]] {
+            assert_eq!(Patch::cut(&grid, 2, &cuts), Patch::whole(&grid, 2));
+        }
+        let part = Patch::cut(&grid, 2, &[cut(Side::Min, 1.1), cut(Side::Max, 1.2)]);
+        assert_relative_eq!(part.volume(), 0.1, max_relative = 1e-14);
     }
 
     #[test]

@@ -2,11 +2,12 @@
 
 use std::fmt;
 
+use super::method_warnings::method_warnings;
 use super::schedule::Schedule;
 use crate::error::StepError;
 use crate::grid::{Face, Side};
 use crate::scene::{
-    Basis, Boundary, BoundaryKind, Method, Phases, PoreBoundary, ReconstructionKind, Scene, StepSize,
+    Boundary, BoundaryKind, Method, Phases, PoreBoundary, ReconstructionKind, Scene, StepSize,
 };
 use crate::stepper::Mechanism;
 
@@ -46,13 +47,14 @@ fn remedy(mechanism: Mechanism) -> &'static str {
 /// What a user should know of a run although it was done.
 pub(super) fn warnings(scene: &Scene, schedule: &Schedule, gain: Option<EnergyGain>) -> Vec<String> {
     let all = [
-        method_warning(scene),
         step_warning(scene, schedule),
         gain.map(|gain| gain.to_string()),
         period_warning("every", scene.output.every, schedule.steps),
         period_warning("checkpoint_every", scene.output.checkpoint_every, schedule.steps),
     ];
-    all.into_iter().flatten().collect()
+    let mut found = method_warnings(scene);
+    found.extend(all.into_iter().flatten());
+    found
 }
 
 /// A fixed step that was, or became, too large.
@@ -205,21 +207,5 @@ fn face_left(scene: &Scene, position: &[f64]) -> Option<String> {
 
 /// Warnings of the method alone.
 pub(super) fn of_method(scene: &Scene) -> Vec<String> {
-    method_warning(scene).into_iter().collect()
-}
-
-/// A warning of a combination of method and model that cannot be relied on, if the scene asks for one: `docs/two-phase.md` has
-/// the figures.
-fn method_warning(scene: &Scene) -> Option<String> {
-    let Phases::Two(_) = scene.material.phases else {
-        return None;
-    };
-    let method = &scene.method;
-    let spline = method.reconstruction == ReconstructionKind::Spline;
-    let unusable = spline && method.basis == Basis::Linear && scene.material.law.large_strain();
-    unusable.then(|| {
-        "method: the cubic spline with linear functions does not bear the load of a surface that moves through cells; take \
-         shepard or taylor, or another basis"
-            .to_owned()
-    })
+    method_warnings(scene)
 }

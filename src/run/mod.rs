@@ -11,6 +11,7 @@ mod invariants;
 mod limits;
 mod loads;
 mod march;
+mod method_warnings;
 mod norms;
 mod particle_cloud;
 mod particle_fields;

@@ -7,13 +7,12 @@ use nalgebra::SVector;
 use super::error::RunError;
 use super::initial::Filling;
 use crate::grid::{Face, Side};
-use crate::scene::{Body, Boundary, BoundaryKind, FORGIVEN, Scene};
+use crate::scene::{Body, Boundary, BoundaryKind, FORGIVEN, ReconstructionKind, Scene};
 use crate::stepper::SurfacePoint;
 
-/// The surfaces of `body`, whose particles are those of `filling` and are numbered from `first` on: in one phase those that bear a
-/// traction, where its boundary says so; in two every end at which a load, a pressure outside or the solid's skin acts on the liquid, that is, all but
-/// the held and sealed ones. Beyond one dimension each row of the lattice has a point wherever it ends, also
-/// at a hole.
+/// The surfaces of `body`, whose particles are those of `filling` and are numbered from `first` on: those that bear a traction, where
+/// its boundary says so, and those that the method must know whatever acts on them ([`must_be_known`]), that is, all but the held and,
+/// in two phases, sealed ones. Beyond one dimension each row of the lattice has a point wherever it ends, also at a hole.
 pub(super) fn surfaces<const D: usize>(
     scene: &Scene,
     body: &Body,
@@ -21,7 +20,7 @@ pub(super) fn surfaces<const D: usize>(
     first: usize,
 ) -> Result<Vec<SurfacePoint<f64>>, RunError> {
     let mut points = Vec::new();
-    for face in Face::all::<D>().filter(|&face| is_needed(scene, face)) {
+    for face in Face::all::<D>().filter(|&face| is_needed::<D>(scene, face)) {
         let area = filling.lattice.volume() / filling.lattice.spacing()[face.axis];
         for end in ends(filling, face) {
             let particle = end.particle;
@@ -29,8 +28,7 @@ pub(super) fn surfaces<const D: usize>(
                 continue;
             }
             let loaded = acts_at(scene, face, &filling.particles.position[particle])?;
-            // The liquid meets a surface whether it bears a load or not.
-            let needed = loaded || scene.material.phases.count() > 1;
+            let needed = loaded || must_be_known::<D>(scene);
             if needed && !touches_another(scene, body, filling, particle, face)? {
                 points.push(SurfacePoint {
                     particle: first + particle,
@@ -58,9 +56,16 @@ pub(super) fn acts_at<const D: usize>(
     }
 }
 
-fn is_needed(scene: &Scene, face: Face) -> bool {
+/// Whether the method must know where bodies end also where no traction acts: the liquid meets a surface in any case, and along one
+/// axis fits end there. Beyond, fits find out from the particles.
+fn must_be_known<const D: usize>(scene: &Scene) -> bool {
+    let fits_end = D == 1 && scene.method.reconstruction != ReconstructionKind::Shepard;
+    scene.material.phases.count() > 1 || fits_end
+}
+
+fn is_needed<const D: usize>(scene: &Scene, face: Face) -> bool {
     let boundary = scene.boundaries.iter().find(|boundary| boundary.face == face);
-    scene.material.phases.count() > 1 || boundary.is_some_and(|b| matches!(b.kind, BoundaryKind::Traction(_)))
+    must_be_known::<D>(scene) || boundary.is_some_and(|b| matches!(b.kind, BoundaryKind::Traction(_)))
 }
 
 /// Whether the end of the body's box meets a wall of the grid that holds the solid and lets no liquid pass;
@@ -223,11 +228,20 @@ mod tests {
         assert_eq!(ends(&[two]), [min(0), max(15)]);
     }
 
+    /// Particle sums look at no end that bears nothing; fits end where the body does.
     #[test]
-    fn one_phase_knows_the_loaded_ends_only() {
+    fn one_phase_knows_the_loaded_ends_and_fits_know_all() {
         assert_eq!(ends(&[ONE_PHASE]), []);
         let loaded = "boundary=[{face='x-max', traction=['1']}]";
         assert_eq!(ends(&[ONE_PHASE, loaded]), [("x-max".to_owned(), 7)]);
+        let both = [("x-min".to_owned(), 0), ("x-max".to_owned(), 7)];
+        for fit in ["taylor", "relaxed-taylor", "spline"] {
+            let fit = format!("method.reconstruction='{fit}'");
+            assert_eq!(ends(&[ONE_PHASE, &fit]), both);
+            assert_eq!(ends(&[ONE_PHASE, &fit, loaded]), both);
+            let held = "boundary=[{face='x-min', fixed=true}]";
+            assert_eq!(ends(&[ONE_PHASE, &fit, held]), both[1..]);
+        }
     }
 
     /// A square ring of 8 x 8 particles with a hole of 4 x 4: eight rows end at its right side, and four at

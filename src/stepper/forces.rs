@@ -4,6 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::by_four;
 use super::cell_sums::CellSums;
+use super::ghost::lump_undetermined_cells;
 use super::lanes::{self, Bodies, Fits, Pass, at_fixed_points};
 use super::matrix::MassMatrix;
 use super::pairs::Pairs;
@@ -199,6 +200,8 @@ where
         if D > 1 {
             self.tie_partly_filled_cells();
         }
+        let space = (&self.basis, &self.grid, &self.bins);
+        lump_undetermined_cells(space, &self.reconstruction, &mut self.dofs.matrix);
         self.dofs.matrix.complete(Some(T::lit(WEAK)));
     }
 

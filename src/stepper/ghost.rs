@@ -1,7 +1,9 @@
 //! Functions that only a partly filled cell's particles see, tied to those of the next cells.
 
 use super::Stepper;
+use super::matrix::MassMatrix;
 use crate::basis::BasisFamily;
+use crate::grid::Grid;
 use crate::law::ConstitutiveLaw;
 use crate::particles::{Bins, Particles};
 use crate::phase::Phase;
@@ -20,40 +22,42 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
-    /// Puts a penalty on the jumps across those faces between occupied cells at which one of them is not full. Cells of few
-    /// particles that have no better one next to them or to their neighbours, drops and splinters, would stay undetermined: their
-    /// masses are lumped.
+    /// Puts a penalty on the jumps across those faces between occupied cells at which one of them is not full, beyond one dimension.
     pub(super) fn tie_partly_filled_cells(&mut self) {
         let (grid, bins, reconstruction) = (&self.grid, &self.bins, &self.reconstruction);
-        let filling = |place: usize| reconstruction.filling(place);
+        let is_full = |place: usize| reconstruction.filling(place) == Filling::Full;
         let full_mass = |place: usize| density(&self.particles, bins, place) * grid.cell_volume();
         let share = share::<T, D>(self.basis.degree());
         for place in 0..bins.occupied().len() {
-            let own = filling(place);
-            let mut held = false;
+            let own_is_full = is_full(place);
             bins.for_each_neighbour(grid, place, |axis, above, other| {
-                let theirs = filling(other);
-                held |= own != Filling::Few || theirs != Filling::Few;
-                if above && (own != Filling::Full || theirs != Filling::Full) {
+                if above && !(own_is_full && is_full(other)) {
                     let cell = grid.cell(bins.occupied()[place] as usize);
                     // The lighter of two bodies must not be tied as if it were the heavier.
                     let mass = full_mass(place).min(full_mass(other)) * share;
                     self.dofs.matrix.tie(grid, &cell, axis, mass);
                 }
             });
-            if own == Filling::Full || held {
-                continue;
-            }
-            bins.for_each_neighbour(grid, place, |_, _, other| {
-                bins.for_each_neighbour(grid, other, |_, _, next| held |= filling(next) != Filling::Few);
-            });
-            if !held {
-                let cell = grid.cell(bins.occupied()[place] as usize);
-                let (x, matrix) = (grid.centre(&cell), &mut self.dofs.matrix);
-                self.basis
-                    .for_each_at_fixed_point(grid, &cell, &x, |dof, _, _| matrix.lump(dof));
-            }
         }
+    }
+}
+
+/// Lumps the masses of cells that nothing determines: drops, splinters, bodies with one particle a cell. A matrix that particles do
+/// not determine has no inverse, and no tie helps where the next cells know no more.
+pub(super) fn lump_undetermined_cells<T, const D: usize, B, R>(
+    (basis, grid, bins): (&B, &Grid<T, D>, &Bins<D>),
+    reconstruction: &R,
+    matrix: &mut MassMatrix<T, D>,
+) where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+{
+    let occupied = bins.occupied().iter().enumerate();
+    for (_, &number) in occupied.filter(|&(place, _)| reconstruction.filling(place) == Filling::Alone) {
+        let cell = grid.cell(number as usize);
+        let x = grid.centre(&cell);
+        basis.for_each_at_fixed_point(grid, &cell, &x, |dof, _, _| matrix.lump(dof));
     }
 }
 

@@ -103,9 +103,13 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
         self.penalty.add_face(grid, cell, axis, mass);
     }
 
-    /// Lumps the row of a DOF, beyond one dimension.
+    /// Lumps the row of a DOF.
     pub(super) fn lump(&mut self, dof: usize) {
-        self.lattice.lump(dof);
+        if D == 1 {
+            self.band.lump(dof);
+        } else {
+            self.lattice.lump(dof);
+        }
     }
 
     /// Takes the sums as complete. In one dimension rows whose diagonal holds less than the share `weak` of their sum are

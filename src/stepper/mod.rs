@@ -39,6 +39,7 @@ mod material_fields;
 mod matrix;
 mod order;
 mod pairs;
+mod polynomial;
 mod relax;
 mod simulation;
 mod spans;
@@ -161,7 +162,8 @@ where
     ///
     /// # Errors
     /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside the grid, a constant of the phase makes no
-    /// sense, or the reconstruction is of one phase only beyond one axis ([`Reconstruction::PARTICLE_MATRIX`]).
+    /// sense, or beyond one axis the reconstruction is of one phase only or wants a basis that is one polynomial of its degree in each
+    /// cell ([`Reconstruction::PARTICLE_MATRIX`]).
     pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
         const {
             crate::basis::constants_agree::<T, D, B>();
@@ -183,6 +185,9 @@ where
         refuse_unknown_stress(&law, &particles)?;
         if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {
             return Err(SetupError::OnePhaseOnly);
+        }
+        if R::PARTICLE_MATRIX && D > 1 {
+            polynomial::refuse_bends_within_cells(&basis, &grid)?;
         }
         for point in &surface {
             point.validate::<D>(particles.len())?;

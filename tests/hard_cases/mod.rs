@@ -16,4 +16,5 @@ mod partly_filled;
 mod positive_density;
 mod precision;
 mod step_bound;
+mod through_scenes;
 mod weak_dof;

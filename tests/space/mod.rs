@@ -14,6 +14,7 @@ mod patch;
 mod rotation;
 mod rubbing;
 mod saturated;
+mod shape;
 mod slope;
 mod translation;
 mod vortex;

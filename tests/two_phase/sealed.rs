@@ -141,7 +141,9 @@ fn check_box(set: &[String]) {
     );
     let (x, liquid) = (&outcome.particles.initial_position, &outcome.liquid);
     for (here, one) in x.iter().zip(liquid) {
-        let mirrored = |there: &&_| (there[0] + here[0] - 1.0).abs() + (there[1] - here[1]).abs() < 1e-9;
+        let mirrored = |there: &&nalgebra::SVector<f64, 2>| {
+            (there[0] + here[0] - 1.0).abs() + (there[1] - here[1]).abs() < 1e-9
+        };
         let other = x.iter().position(|there| mirrored(&there)).unwrap();
         let differ = (one.pressure - liquid[other].pressure).abs() / one.pressure.abs();
         assert!(differ < 1e-9, "{set:?}: left and right differ by {differ}");

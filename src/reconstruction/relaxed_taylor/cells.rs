@@ -1,12 +1,14 @@
 //! Cells that are not fitted four at a time: those that end within themselves, and those whose particles are hard to tell apart.
 
 use crate::field::Field;
+use crate::grid::Side;
 use crate::reconstruction::taylor::local;
 use crate::reconstruction::{Cloud, Filling, Patch};
 use crate::scalar::Scalar;
 use crate::taylor::{CellFit, Gram, shift_sums};
 
-use super::filling::{FULL, OpenSides, borders_on_nothing, is_full, reach};
+use super::determined::seen_by_particles;
+use super::filling::{OpenSides, borders_on_nothing, is_full, reaches};
 use super::four::KeptSums;
 
 /// How an occupied cell is fitted.
@@ -16,8 +18,8 @@ pub(super) enum Kind {
     Four,
     /// Alone, because a surface cuts it or its particles leave it in doubt what they tell.
     Alone,
-    /// Not at all: material ends within it on any slant, beyond one dimension. Its particles are the points of its force, and are
-    /// left as they are.
+    /// Not at all: material ends within it on any slant, beyond one dimension, or two bodies end within it along one axis, or there is
+    /// no fit to speak of ([`Filling::Alone`]). Its particles are the points of its force, and are left as they are.
     Open,
 }
 
@@ -25,7 +27,7 @@ pub(super) enum Kind {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RelaxedCell {
     pub(super) kind: Kind,
-    /// Beyond one dimension; always full in one, where weak DOFs are lumped.
+    /// In one dimension full, few or alone.
     pub(super) filling: Filling,
     /// Whether its own particles determine all functions.
     pub(super) is_full: bool,
@@ -48,16 +50,20 @@ impl RelaxedCell {
         cell: usize,
         open: &OpenSides<D>,
         [own_is_full, own_is_hard]: [bool; 2],
-        tolerance: T,
+        (degree, tolerance): (usize, T),
     ) -> Self {
-        if cloud.cuts.is_empty() && *open == [[false; 2]; D] && !own_is_hard {
+        let is_cut = !cloud.cuts.is_empty() && cloud.is_cut(&cloud.grid.cell(cell));
+        if !is_cut && *open == [[false; 2]; D] && !own_is_hard {
             return Self {
                 kind: Kind::Four,
-                filling: Filling::Full,
+                filling: match own_is_full {
+                    true => Filling::Full,
+                    false => seen_by_particles(cloud, cell, degree),
+                },
                 is_full: own_is_full,
             };
         }
-        Self::apart::<T, D, NB>(cloud, cell, open, [own_is_full, own_is_hard], tolerance)
+        Self::apart::<T, D, NB>(cloud, cell, open, [own_is_full, own_is_hard], (degree, tolerance))
     }
 
     #[cold]
@@ -67,10 +73,13 @@ impl RelaxedCell {
         cell: usize,
         open: &OpenSides<D>,
         [own_is_full, own_is_hard]: [bool; 2],
-        tolerance: T,
+        (degree, tolerance): (usize, T),
     ) -> Self {
         let (whole, patch) = (Patch::whole(cloud.grid, cell), ended_patch(cloud, cell, open));
-        let is_open = D > 1 && borders_on_nothing(cloud, &whole, open) && !is_full(cloud, &whole);
+        let is_open = match D {
+            1 => two_bodies_end(cloud, cell),
+            _ => borders_on_nothing(cloud, &whole, open) && !is_full(cloud, &whole),
+        };
         let kind = match (is_open, own_is_hard || patch != whole) {
             (true, _) => Kind::Open,
             (false, true) => Kind::Alone,
@@ -83,9 +92,10 @@ impl RelaxedCell {
         };
         let ends_within = D > 1 && (is_open || patch != whole);
         let filling = match (ends_within, is_full) {
-            (false, _) => Filling::Full,
             (true, true) => Filling::Part,
             (true, false) => Filling::Few,
+            (false, true) => Filling::Full,
+            (false, false) => seen_by_particles(cloud, cell, degree),
         };
         Self {
             kind,
@@ -93,6 +103,13 @@ impl RelaxedCell {
             is_full,
         }
     }
+}
+
+/// Whether one body ends in a cell of the only axis below where another begins: no one box holds what there is.
+fn two_bodies_end<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: usize) -> bool {
+    let here = || cloud.cuts.iter().filter(|cut| cut.cell as usize == cell);
+    let ends = |side: Side| here().filter(move |cut| cut.side == side);
+    ends(Side::Max).any(|end| ends(Side::Min).any(|start| start.position >= end.position))
 }
 
 /// What surfaces, or the ends of the particles on `open` sides, leave of the cell with number `cell`. Beyond one dimension a cell
@@ -108,12 +125,7 @@ pub(super) fn ended_patch<T: Scalar, const D: usize>(
     }
     for (axis, sides) in open.iter().enumerate() {
         let half = patch.half[axis];
-        let ends = |above: bool| {
-            let reach = reach(cloud, &whole, axis, above);
-            let ends = sides[usize::from(above)] && reach < T::lit(FULL);
-            half * if ends { reach } else { T::one() }
-        };
-        let (low, high) = (ends(false), ends(true));
+        let [low, high] = reaches(cloud, &whole, axis, *sides).map(|reach| reach * half);
         if low + high > T::zero() {
             patch.centre[axis] += (high - low) / T::lit(2.0);
             patch.half[axis] = (low + high) / T::lit(2.0);

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use super::cells::RelaxedCell;
+use super::cells::{Kind, RelaxedCell};
+use super::determined::seen_by_particles;
 use super::four::{FourFits, KeptProducts, keep_gram};
 use super::{GROUPS, RelaxedTaylor};
 use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::{Rows, each_span, worth_sharing};
-use crate::reconstruction::Cloud;
+use crate::reconstruction::{Cloud, Filling};
 use crate::scalar::Scalar;
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
@@ -42,17 +43,54 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                 width: LANES,
             },
         );
-        let tolerance = self.tolerance;
+        let (degree, tolerance) = (self.degree, self.tolerance);
         each_span(parallel, GROUPS, work, &|first, (fits, cells)| {
             let fitting = Fitting {
                 cloud,
                 grams: &grams,
                 count,
+                degree,
                 tolerance,
             };
             with_lanes_of!(T, fitting.fits_in(first, fits, cells.values));
         });
         (self.grams, self.fits, self.cells) = (grams, fits, cells);
+    }
+
+    /// Leaves those cells to their particles that neither these nor the cells near them determine.
+    pub(super) fn leave_undetermined(&mut self, cloud: &Cloud<'_, T, D>) {
+        for place in 0..self.cells.len() {
+            let is_alone = match self.cells[place].filling {
+                Filling::Few => !self.is_held(cloud, place),
+                Filling::Part => self.is_thin(cloud, place),
+                Filling::Full | Filling::Alone => false,
+            };
+            if is_alone {
+                let cell = &mut self.cells[place];
+                (cell.kind, cell.filling) = (Kind::Open, Filling::Alone);
+            }
+        }
+    }
+
+    /// Whether particles determine a cell next to this one or, beyond one dimension, where ties reach further, next to that.
+    fn is_held(&self, cloud: &Cloud<'_, T, D>, place: usize) -> bool {
+        let holds = |place: usize| matches!(self.cells[place].filling, Filling::Full | Filling::Part);
+        let (bins, grid) = (cloud.bins, cloud.grid);
+        let mut held = false;
+        bins.for_each_neighbour(grid, place, |_, _, other| {
+            held |= holds(other);
+            if D > 1 {
+                bins.for_each_neighbour(grid, other, |_, _, next| held |= holds(next));
+            }
+        });
+        held
+    }
+
+    /// Whether particles see no square in a cell, and it has no neighbours along an axis that would know.
+    fn is_thin(&self, cloud: &Cloud<'_, T, D>, place: usize) -> bool {
+        let open = self.fits[place / LANES].open_sides(place % LANES);
+        open.contains(&[true; 2])
+            && seen_by_particles(cloud, cloud.bins.occupied()[place] as usize, self.degree) != Filling::Full
     }
 
     #[inline(never)]
@@ -74,6 +112,8 @@ struct Fitting<'a, 'c, T, const D: usize, const NB: usize> {
     grams: &'a [KeptProducts<T, NB>],
     /// Number of occupied cells.
     count: usize,
+    /// Of the basis.
+    degree: usize,
     tolerance: T,
 }
 
@@ -93,7 +133,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Fitting<'_, '_, T, D, NB> {
                     number,
                     &fits.open_sides(l),
                     own,
-                    self.tolerance,
+                    (self.degree, self.tolerance),
                 );
             }
         }

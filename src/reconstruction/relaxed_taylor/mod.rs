@@ -1,6 +1,7 @@
 //! Relaxed Taylor least squares.
 
 mod cells;
+mod determined;
 mod filling;
 mod four;
 mod geometry;
@@ -60,11 +61,15 @@ const ALIKE: f64 = 2.0;
 ///
 /// In one dimension a cell ends where a body's surface cuts it. Beyond, where material ends within a cell on any slant, the particles
 /// themselves are the points of its force, nothing is relaxed there, and the stepper ties its functions to those of the next
-/// cells ([`crate::mass::Penalty`]).
+/// cells ([`crate::mass::Penalty`]). The same ties hold beyond one dimension where particles do not see all that a basis is made of.
+/// Cells that neither their particles nor the cells near them determine (one particle a cell, drops) are lumped, and stepped as by
+/// [`Shepard`].
 #[doc = include_str!("../../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {
     rule: GaussRule<T, D, NB>,
+    /// Of the basis.
+    degree: usize,
     tolerance: T,
     relaxation: Relaxation<T>,
     /// What takes its place where a liquid flows.
@@ -103,6 +108,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     pub fn for_degree(degree: usize) -> Self {
         Self {
             rule: GaussRule::new(GaussRule::<T, D, NB>::points_for_degree(degree)),
+            degree,
             tolerance: default_tolerance(D),
             relaxation: Relaxation::in_dimensions(D),
             with_liquid: Some(Relaxation::with_liquid(degree, false)),
@@ -162,6 +168,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
         self.reserve(cloud.grid.cell_count());
         self.take_in_geometry(cloud);
+        self.leave_undetermined(cloud);
         let reduced = |cell: &&RelaxedCell| cell.kind != Kind::Open && !cell.is_full;
         self.reduced = self.cells.iter().filter(reduced).count();
     }

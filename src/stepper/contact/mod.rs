@@ -21,6 +21,7 @@
 
 mod delassus;
 mod mapping;
+mod shape;
 mod solve;
 mod sums;
 mod wall;
@@ -45,6 +46,8 @@ const CLOSED: f64 = 0.02;
 pub(super) struct WallContact<T, const D: usize> {
     dofs: WallDofs<T, D>,
     delassus: Delassus<T, D>,
+    /// Of each particle, in the order in which they were given, its size along each axis over the root of its volume.
+    shapes: Vec<SVector<T, D>>,
     /// Particles that see a DOF on a wall.
     near: Vec<u32>,
     /// Contacts that are closed.
@@ -89,6 +92,7 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
         Self {
             dofs: WallDofs::none(),
             delassus: Delassus::none(),
+            shapes: Vec::new(),
             near: Vec::new(),
             closed: Vec::new(),
             inverse: Vec::new(),
@@ -109,6 +113,7 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
 
     pub(super) fn bytes(&self) -> usize {
         let vectors = [
+            &self.shapes,
             &self.inverse,
             &self.velocity,
             &self.impulse,
@@ -215,6 +220,11 @@ where
         contact.velocity = vec![SVector::zeros(); places];
         contact.impulse = vec![SVector::zeros(); places];
         contact.gain = vec![SVector::zeros(); dofs];
+        let shapes = shape::shapes(&self.grid, &self.particles.initial_position);
+        contact.shapes.resize(shapes.len(), SVector::zeros());
+        for (place, shape) in shapes.into_iter().enumerate() {
+            contact.shapes[self.order.number(place)] = shape;
+        }
         contact.near = Vec::with_capacity(self.particles.len());
         contact.closed = Vec::with_capacity(contact.dofs.contacts.len());
         if !by_sums {
@@ -232,6 +242,7 @@ where
             delassus,
             near,
             closed,
+            shapes,
             ..
         } = &mut self.contact;
         let (basis, grid, particles) = (&self.basis, &self.grid, &self.particles);
@@ -242,7 +253,8 @@ where
             if !Wall::all(forcing).any(|wall| wall.cells_to(grid, cell) <= basis.degree()) {
                 continue;
             }
-            let half = half_size(grid, particles.volume[p]);
+            let root = particles.volume[p].powf(T::one() / T::count(D));
+            let half = shapes[self.order.number(p)] * (root / T::lit(2.0));
             basis.for_each(grid, cell, x, |dof, phi, _| {
                 let Some(place) = dofs.place(dof).filter(|_| phi > T::zero()) else {
                     return;
@@ -284,11 +296,4 @@ where
             }
         });
     }
-}
-
-/// Half the size of a particle along each axis (m): its share of a cell, of the cell's shape.
-fn half_size<T: Scalar, const D: usize>(grid: &crate::grid::Grid<T, D>, volume: T) -> SVector<T, D> {
-    let cell = grid.cell_size();
-    let share = volume / cell.iter().fold(T::one(), |product, &h| product * h);
-    cell * (share.powf(T::one() / T::count(D)) / T::lit(2.0))
 }

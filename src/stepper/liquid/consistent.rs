@@ -5,6 +5,7 @@ use nalgebra::SVector;
 use super::super::acceleration::Walls;
 use super::super::cell_sums::CellSums;
 use super::super::forces::{WEAK, fill_with_pairs};
+use super::super::ghost::lump_undetermined_cells;
 use super::super::lanes::Bodies;
 use super::super::matrix::MassMatrix;
 use super::super::{Forcing, Stepper};
@@ -53,6 +54,8 @@ where
                 masses,
             };
             fill_with_pairs(&self.basis, &self.grid, bodies, &mut self.pairs, matrix);
+            let space = (&self.basis, &self.grid, &self.bins);
+            lump_undetermined_cells(space, &self.reconstruction, matrix);
             matrix.complete(Some(T::lit(WEAK)));
         }
     }
