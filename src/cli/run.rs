@@ -141,7 +141,7 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
     ));
     lines.push(format!(
         "  time          {steps} steps of {time_step:.3e} s to {time:.6} s; velocities are those of \
-         {velocity_time:.6} s"
+         {velocity_time:.6e} s"
     ));
     lines.push(format!(
         "  speed         {wall_seconds:.3} s, {:.2} million particle steps per second, {bytes_per_particle:.0} bytes per particle",
