@@ -62,7 +62,7 @@ impl From<StudyError> for Failure {
         let message = error.to_string();
         match error {
             StudyError::NoReference | StudyError::NothingToDo => Self::Input(message),
-            StudyError::Run { source, .. } => match Self::from(source) {
+            StudyError::Run { source, .. } => match Self::from(*source) {
                 Self::Input(_) => Self::Input(message),
                 Self::Stopped(_) => Self::Stopped(message),
             },

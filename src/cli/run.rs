@@ -165,7 +165,7 @@ fn summary_text(summary: &Summary, files: &[PathBuf]) -> String {
     ));
     lines.push(format!(
         "  time          {steps} steps of {time_step:.3e} s{} to {time:.6} s; velocities are those of \
-         {velocity_time:.6} s",
+         {velocity_time:.6e} s",
         match time_step_range {
             None => String::new(),
             Some([least, most]) => format!(" on average ({least:.3e} to {most:.3e} s)"),

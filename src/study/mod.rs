@@ -155,7 +155,7 @@ pub enum StudyError {
         /// Number of cells.
         cells: usize,
         /// What went wrong.
-        source: RunError,
+        source: Box<RunError>,
     },
     /// A file cannot be written.
     #[error(transparent)]
@@ -241,7 +241,7 @@ fn one(scene: &Scene, method: Method, cells: usize) -> Result<(Row, Timing, Opti
         Err(source) => Err(StudyError::Run {
             method,
             cells,
-            source,
+            source: Box::new(source),
         }),
     }
 }

@@ -32,7 +32,7 @@ impl Timing {
         let seconds = step_loop_seconds(&self.scene).map_err(|source| StudyError::Run {
             method: self.method,
             cells: self.cells,
-            source,
+            source: Box::new(source),
         })?;
         self.times.push(seconds);
         Ok(())

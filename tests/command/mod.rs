@@ -1,6 +1,7 @@
 //! The command as a user meets it: exit status, what stands on standard output and on standard error, files.
 
 mod resume;
+mod warned;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
