@@ -134,6 +134,16 @@ pub enum StepError {
         /// The face.
         face: Face,
     },
+    /// A wall at a face where DOFs that it does not hold have a value.
+    #[error(
+        "the face {face} cannot be held: DOF {dof} has a value there that the basis does not name; `for_each_on_face` must, or HOLDS_ABOUT say so"
+    )]
+    WallNotHeld {
+        /// The face.
+        face: Face,
+        /// A DOF that is left out.
+        dof: usize,
+    },
     /// A pressure outside the pores, where no liquid flows through them.
     #[error(
         "the face {face} has a pore pressure, but no liquid flows through the pores of this phase; leave it out"
