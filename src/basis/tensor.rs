@@ -70,9 +70,10 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
             .iter()
             .zip(&row.value)
             .filter(|(_, value)| !value.is_zero());
-        felt.fold(usize::MAX..0, |range, (&dof, _)| {
-            range.start.min(dof)..range.end.max(dof + 1)
-        })
+        let (first, end) = felt.fold((usize::MAX, 0), |(first, end), (&dof, _)| {
+            (first.min(dof), end.max(dof + 1))
+        });
+        first.min(end)..end
     }
 
     /// Where, in cell sizes from the axis's lower end, the value that belongs to `dof` is taken when a field is interpolated:

@@ -373,3 +373,49 @@ pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction
     assert!(!R::BY_FOUR || R::BY_CELLS, "BY_FOUR wants BY_CELLS");
     assert!(!R::KEEPS_FITS || R::BY_CELLS, "KEEPS_FITS wants BY_CELLS");
 }
+
+/// A constant without its method does not compile:
+///
+/// ```compile_fail,E0080
+/// use materialpoint::field::Field;
+/// use materialpoint::grid::Grid;
+/// use materialpoint::particles::Bins;
+/// use materialpoint::reconstruction::{Cloud, Point, Reconstruction, Shepard};
+/// use nalgebra::{SVector, vector};
+///
+/// struct Forgetful;
+///
+/// impl Reconstruction<f64, 1> for Forgetful {
+///     const FIELDS_AT_PARTICLES: bool = true;
+///     const AMOUNTS_AT_PARTICLES: bool = true;
+///     const BY_CELLS: bool = true; // but no `integrate_cells`
+///
+///     fn prepare(&mut self, _cloud: &Cloud<'_, f64, 1>) {}
+///
+///     fn integrate<Q: Field<f64>>(
+///         &mut self,
+///         cloud: &Cloud<'_, f64, 1>,
+///         value: impl Fn(usize) -> Q,
+///         sink: impl FnMut(&Point<f64, 1>, Q),
+///     ) {
+///         Shepard.integrate(cloud, value, sink);
+///     }
+///
+///     fn integrate_conserved<Q: Field<f64>>(
+///         &mut self,
+///         cloud: &Cloud<'_, f64, 1>,
+///         amount: impl Fn(usize) -> Q,
+///         sink: impl FnMut(&Point<f64, 1>, Q),
+///     ) {
+///         Shepard.integrate_conserved(cloud, amount, sink);
+///     }
+/// }
+///
+/// let grid = Grid::new(vector![0.0], vector![1.0], [1]).unwrap();
+/// let positions = [vector![0.5]];
+/// let bins = Bins::new(&grid, &positions).unwrap();
+/// let cloud = Cloud::new(&grid, &bins, &positions, &[1.0]).unwrap();
+/// Forgetful.integrate_cells(&cloud, 0..1, |_| 1.0, |_, _| ());
+/// ```
+#[cfg(doctest)]
+struct Forgotten;
