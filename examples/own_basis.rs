@@ -16,9 +16,9 @@ use materialpoint::scalar::Scalar;
 use materialpoint::stepper::{Forcing, Setup, Stepper};
 use nalgebra::vector;
 
-/// Quadratic B-splines on plain uniform knots, as many MPM codes use them: every cell has the same three functions.
-/// No function interpolates at the ends: a wall holds both that have a value there, and so the strain in its cell too. A free
-/// body does not mind.
+/// Quadratic B-splines on plain uniform knots, as many MPM codes use them: every cell has the same three
+/// functions. No function interpolates at the ends: a wall holds both that have a value there, and so the
+/// strain in its cell too. A free body does not mind.
 #[derive(Clone, Copy, Debug)]
 pub struct UniformQuadratic;
 

@@ -128,7 +128,8 @@ pub enum StepError {
     },
     /// Friction at a face, with a liquid that flows through the pores.
     #[error(
-        "the face {face} is to rub, but friction is for the solid of one phase; where a liquid flows let the face be held or free"
+        "the face {face} is to rub, but friction is for the solid of one phase; where a liquid flows let it be \
+         held or free"
     )]
     FrictionWithFlow {
         /// The face.
@@ -136,7 +137,8 @@ pub enum StepError {
     },
     /// A wall at a face where DOFs that it does not hold have a value.
     #[error(
-        "the face {face} cannot be held: DOF {dof} has a value there that the basis does not name; `for_each_on_face` must, or HOLDS_ABOUT say so"
+        "the face {face} cannot be held: DOF {dof} has a value there that the basis does not name; \
+         `for_each_on_face` must, or HOLDS_ABOUT say so"
     )]
     WallNotHeld {
         /// The face.
@@ -146,7 +148,8 @@ pub enum StepError {
     },
     /// A pressure outside the pores, where no liquid flows through them.
     #[error(
-        "the face {face} has a pore pressure, but no liquid flows through the pores of this phase; leave it out"
+        "the face {face} has a pore pressure, but no liquid flows through the pores of this phase; leave it \
+         out"
     )]
     PressureWithoutFlow {
         /// The face.

@@ -208,7 +208,8 @@ impl<T: Scalar> Lanes<T> for Four<T> {
     }
 }
 
-/// Vectors of a processor as lanes of a scalar that is not their own: a mistake of whoever names both types, never of input.
+/// Vectors of a processor as lanes of a scalar that is not their own: a mistake of whoever names both types,
+/// never of input.
 #[cold]
 #[inline(never)]
 fn not_its_lanes<V, T>() -> ! {

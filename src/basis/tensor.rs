@@ -57,9 +57,10 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
     /// Whether a wall at an end is held about only, see [`BasisFamily::HOLDS_ABOUT`].
     const HOLDS_ABOUT: bool = false;
 
-    /// The DOFs that a wall at an end of the axis holds. Unless told otherwise those that have a value there: material at the wall
-    /// then moves exactly as told. Where that is not one DOF alone, more is held than the wall: strain there too, which costs an
-    /// order of accuracy, so a family whose ends interpolate is better at walls.
+    /// The DOFs that a wall at an end of the axis holds. Unless told otherwise those that have a value there:
+    /// material at the wall then moves exactly as told. Where that is not one DOF alone, more is held than
+    /// the wall: strain there too, which costs an order of accuracy, so a family whose ends interpolate is
+    /// better at walls.
     fn dofs_at_end(&self, cells: usize, side: Side) -> Range<usize> {
         let row = match side {
             Side::Min => self.row(cells, 0, T::zero()),

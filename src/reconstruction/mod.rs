@@ -175,9 +175,10 @@ pub struct Crossed<T> {
 
 /// Turns particle data into quadrature points with weighted values.
 ///
-/// Five items must be written. Each constant that says more goes with the methods that its words name: a constant without
-/// its method, or constants that contradict each other, are errors at compile time, as soon as a stepper is made of the type.
-/// [`crate::testing::check_reconstruction`] checks that all methods stream what `integrate` and `integrate_conserved` do.
+/// Five items must be written. Each constant that says more goes with the methods that its words name: a
+/// constant without its method, or constants that contradict each other, are errors at compile time, as soon
+/// as a stepper is made of the type. [`crate::testing::check_reconstruction`] checks that all methods stream
+/// what `integrate` and `integrate_conserved` do.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not reconstruct scalar `{T}` in `{D}` dimensions",
     note = "CubicSpline is global and exists in 1-D only; Taylor<T, D, NB> takes NB = 3, 6, 10 for D = 1, 2, 3"
@@ -252,7 +253,8 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sync {
         const { assert!(!Self::BY_CELLS, "BY_CELLS wants an own `integrate_cells`") };
     }
 
-    /// What [`Reconstruction::integrate_conserved`] streams in the given `cells`, likewise, where not the particles are streamed.
+    /// What [`Reconstruction::integrate_conserved`] streams in the given `cells`, likewise, where not the
+    /// particles are streamed.
     fn integrate_conserved_cells<Q: Field<T>>(
         &self,
         _cloud: &Cloud<'_, T, D>,

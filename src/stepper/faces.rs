@@ -11,7 +11,8 @@ use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 
-/// Of each face, in the order of [`Face::all`], the DOFs that a wall holds, and one that has a value there all the same.
+/// Of each face, in the order of [`Face::all`], the DOFs that a wall holds, and one that has a value there
+/// all the same.
 pub(super) fn face_dofs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,

@@ -287,10 +287,10 @@ where
     /// One step of size `dt` (s) under `forcing`, the loads and boundary values of this step.
     ///
     /// # Errors
-    /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the law: the particles then
-    /// hold the state in which that was noticed. If the step's size makes no sense, or `forcing` has a condition that the phase does
-    /// not know (friction where a liquid flows, a pore pressure where none does) or a wall that the basis would let slip: nothing has
-    /// moved then.
+    /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the
+    /// law: the particles then hold the state in which that was noticed. If the step's size makes no sense,
+    /// or `forcing` has a condition that the phase does not know (friction where a liquid flows, a pore
+    /// pressure where none does) or a wall that the basis would let slip: nothing has moved then.
     pub fn step(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
         if !dt.is_finite() || dt <= T::zero() {
             return Err(StepError::StepSize { value: dt.primal() });

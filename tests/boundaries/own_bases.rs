@@ -1,5 +1,5 @@
-//! Bases whose ends do not interpolate, or whose functions are wider than the degree that they reproduce: what a stepper makes
-//! of them.
+//! Bases whose ends do not interpolate, or whose functions are wider than the degree that they reproduce:
+//! what a stepper makes of them.
 
 use std::f64::consts::PI;
 
@@ -87,8 +87,8 @@ const LENGTH: f64 = 1.0;
 const DENSITY: f64 = 1e3;
 const MODULUS: f64 = 1e5;
 
-/// A box full of material that vibrates along axis 0 between walls; velocities and positions after a part of the period of
-/// its first mode.
+/// A box full of material that vibrates along axis 0 between walls; velocities and positions after a part of
+/// the period of its first mode.
 fn vibrate<const D: usize, B, R>(
     basis: B,
     reconstruction: R,
@@ -129,7 +129,8 @@ where
     Ok(stepper.particles().clone())
 }
 
-/// Error of the displacement after a quarter of a period, relative to the amplitude `v / omega` of the exact standing wave.
+/// Error of the displacement after a quarter of a period, relative to the amplitude `v / omega` of the exact
+/// standing wave.
 fn error<B: BasisFamily<f64, 1>>(basis: B, cells: usize) -> f64 {
     let particles = vibrate::<1, _, _>(basis, Shepard, cells, 0.25).unwrap();
     let amplitude = 1e-3 * LENGTH / PI / (MODULUS / DENSITY).sqrt();
@@ -145,8 +146,8 @@ fn error<B: BasisFamily<f64, 1>>(basis: B, cells: usize) -> f64 {
     (deviations.sum::<f64>() / count).sqrt() / amplitude
 }
 
-/// Both functions that reach a wall are held, which holds strain there too: first order. The ghost node alone would let the
-/// ends go, at an error of the amplitude's size.
+/// Both functions that reach a wall are held, which holds strain there too: first order. The ghost node alone
+/// would let the ends go, at an error of the amplitude's size.
 #[test]
 fn walls_hold_a_basis_whose_ends_do_not_interpolate() {
     let [coarse, fine] = [20, 40].map(|cells| error(Uniform, cells));

@@ -44,7 +44,8 @@ pub(super) fn check<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     Ok(())
 }
 
-/// What the factors make of a point. The other lanes hold other points of the cell: a lane must not see its neighbours.
+/// What the factors make of a point. The other lanes hold other points of the cell: a lane must not see its
+/// neighbours.
 fn by_factors<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,

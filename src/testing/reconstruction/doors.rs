@@ -1,5 +1,5 @@
-//! The fast ways by which a step asks a reconstruction: they must stream what [`Reconstruction::integrate`] and
-//! [`Reconstruction::integrate_conserved`] do.
+//! The fast ways by which a step asks a reconstruction: they must stream what [`Reconstruction::integrate`]
+//! and [`Reconstruction::integrate_conserved`] do.
 
 use nalgebra::SVector;
 
@@ -71,8 +71,8 @@ fn keep<T: Scalar, const D: usize>(points: &mut Vec<Streamed<T, D>>) -> impl FnM
     }
 }
 
-/// What four cells at once stream, and the cells that cannot be one by one; nothing if the reconstruction has no line of points as it
-/// is set up, and then a step does not ask for four either.
+/// What four cells at once stream, and the cells that cannot be one by one; nothing if the reconstruction has
+/// no line of points as it is set up, and then a step does not ask for four either.
 fn by_four<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     reconstruction: &R,
     cloud: &Cloud<'_, T, D>,

@@ -326,7 +326,8 @@ fn lanes_that_say_something_else_than_rows_are_found() {
     }
 }
 
-/// Dual domain that says nothing of points that stand still, so that four cells at once would see those that move.
+/// Dual domain that says nothing of points that stand still, so that four cells at once would see those that
+/// move.
 #[test]
 fn other_functions_at_fixed_points_must_be_announced() {
     #[derive(Clone, Debug)]

@@ -308,7 +308,8 @@ fn mistakes_are_found_and_named() {
     );
 }
 
-/// The library's own, a thousand cells from the origin: positions are rounded there, and the check allows for it.
+/// The library's own, a thousand cells from the origin: positions are rounded there, and the check allows for
+/// it.
 #[test]
 fn far_from_the_origin_the_claims_are_kept_too() {
     let grid = Grid::new(vector![1000.0], vector![1001.0], [4]).unwrap();
