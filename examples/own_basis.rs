@@ -16,9 +16,9 @@ use materialpoint::scalar::Scalar;
 use materialpoint::stepper::{Forcing, Setup, Stepper};
 use nalgebra::vector;
 
-/// Quadratic B-splines on plain uniform knots, as many MPM codes use them: every cell has the same three functions.
-/// No function interpolates at the ends, so a wall cannot be held exactly (`testing::check_basis` reports it); a free
-/// body does not mind.
+/// Quadratic B-splines on plain uniform knots, as many MPM codes use them: every cell has the same three
+/// functions. No function interpolates at the ends: a wall holds both that have a value there, and so the
+/// strain in its cell too. A free body does not mind.
 #[derive(Clone, Copy, Debug)]
 pub struct UniformQuadratic;
 
@@ -37,6 +37,9 @@ impl<T: Scalar> AxisFamily<T, 3> for UniformQuadratic {
             slope: [-r, r - s, s],
         }
     }
+
+    // The DOFs of cell `i` are `i, i + 1, i + 2` everywhere: a step may compute with four points at once.
+    const UNIFORM: bool = true;
 }
 
 // In every dimension: the product of the one-axis functions.

@@ -164,15 +164,28 @@ pub enum StepError {
     },
     /// Friction at a face, with a liquid that flows through the pores.
     #[error(
-        "the face {face} is to rub, but friction is for the solid of one phase; where a liquid flows let the face be held or free"
+        "the face {face} is to rub, but friction is for the solid of one phase; where a liquid flows let it be \
+         held or free"
     )]
     FrictionWithFlow {
         /// The face.
         face: Face,
     },
+    /// A wall at a face where DOFs that it does not hold have a value.
+    #[error(
+        "the face {face} cannot be held: DOF {dof} has a value there that the basis does not name; \
+         `for_each_on_face` must, or HOLDS_ABOUT say so"
+    )]
+    WallNotHeld {
+        /// The face.
+        face: Face,
+        /// A DOF that is left out.
+        dof: usize,
+    },
     /// A pressure outside the pores, where no liquid flows through them.
     #[error(
-        "the face {face} has a pore pressure, but no liquid flows through the pores of this phase; leave it out"
+        "the face {face} has a pore pressure, but no liquid flows through the pores of this phase; leave it \
+         out"
     )]
     PressureWithoutFlow {
         /// The face.

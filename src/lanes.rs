@@ -208,13 +208,25 @@ impl<T: Scalar> Lanes<T> for Four<T> {
     }
 }
 
-/// The vectors of a processor are the lanes of their own scalar only: asked for another one they answer with zeros.
+/// Vectors of a processor as lanes of a scalar that is not their own: a mistake of whoever names both types,
+/// never of input.
+#[cold]
+#[inline(never)]
+fn not_its_lanes<V, T>() -> ! {
+    panic!(
+        "{} is not made of {}",
+        std::any::type_name::<V>(),
+        std::any::type_name::<T>()
+    )
+}
+
+/// The vectors of a processor are the lanes of their own scalar only: asked for another one they panic.
 macro_rules! vector {
     ($vector:ident, $scalar:ty, $lanes:literal, |$packs:ident| $sums:expr) => {
         impl<T: Scalar> SideBySide<T> for $vector {
             #[inline(always)]
             fn splat(value: T) -> Self {
-                Self::splat(same(value).unwrap_or_default())
+                Self::splat(same(value).unwrap_or_else(|| not_its_lanes::<Self, T>()))
             }
 
             #[inline(always)]
@@ -247,12 +259,12 @@ macro_rules! vector {
             #[inline(always)]
             fn new(values: [T; $lanes]) -> Self {
                 let values: Option<[$scalar; $lanes]> = same(values);
-                Self::new(values.unwrap_or_default())
+                Self::new(values.unwrap_or_else(|| not_its_lanes::<Self, T>()))
             }
 
             #[inline(always)]
             fn array(self) -> [T; $lanes] {
-                same(self.to_array()).unwrap_or([T::zero(); $lanes])
+                same(self.to_array()).unwrap_or_else(|| not_its_lanes::<Self, T>())
             }
 
             #[inline(always)]

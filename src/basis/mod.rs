@@ -72,6 +72,11 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
     /// change alike all over the cell.
     const CONSTANT_GRADIENT: bool = false;
 
+    /// Whether DOFs besides those of [`BasisFamily::for_each_on_face`] have a value on a face, so that a wall
+    /// there holds the material about only. A step refuses to hold a face where it finds such DOFs and nobody
+    /// has said so.
+    const HOLDS_ABOUT: bool = false;
+
     /// What [`BasisFamily::for_each_at_fixed_point`] visits.
     const AT_FIXED_POINTS: FixedPoints = FixedPoints::Alike;
 
@@ -90,8 +95,8 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
     /// Polynomial degree that the values reproduce.
     fn degree(&self) -> usize;
 
-    /// How far apart along an axis two DOFs can be whose values overlap; no less than [`BasisFamily::WIDTH`] less one. Unless told
-    /// otherwise the least that the degree and the width allow.
+    /// How far apart along an axis two DOFs can be whose values overlap; no less than [`BasisFamily::WIDTH`]
+    /// less one. Unless told otherwise the least that the degree and the width allow.
     fn reach(&self) -> usize {
         self.degree().max(Self::WIDTH.saturating_sub(1))
     }
@@ -168,8 +173,9 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
         reach
     }
 
-    /// Calls `f` for every DOF on a face of the grid. The families here interpolate there: no other DOF
-    /// has a value on the face.
+    /// Calls `f` for every DOF that a wall at a face of the grid holds, each once and in ascending order. No
+    /// other DOF has a value on the face, unless [`BasisFamily::HOLDS_ABOUT`]. Unless told otherwise the
+    /// outermost DOF of each line: right where that one interpolates.
     fn for_each_on_face(&self, grid: &Grid<T, D>, face: Face, mut f: impl FnMut(usize)) {
         let dofs = self.dofs(grid);
         let (first, shape) = (grid.window().first()[face.axis], grid.window().shape()[face.axis]);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::SVector;
 
 use super::BasisFamily;
-use crate::grid::{Cell, Grid};
+use crate::grid::{Cell, Face, Grid, Side};
 use crate::lanes::SideBySide;
 use crate::scalar::Scalar;
 
@@ -52,6 +52,29 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
     #[inline(always)]
     fn lanes<V: SideBySide<T>>(&self, cells: usize, cell: usize, unit: V) -> ([V; W], [V; W]) {
         one_by_one(self, cells, cell, unit)
+    }
+
+    /// Whether a wall at an end is held about only, see [`BasisFamily::HOLDS_ABOUT`].
+    const HOLDS_ABOUT: bool = false;
+
+    /// The DOFs that a wall at an end of the axis holds. Unless told otherwise those that have a value there:
+    /// material at the wall then moves exactly as told. Where that is not one DOF alone, more is held than
+    /// the wall: strain there too, which costs an order of accuracy, so a family whose ends interpolate is
+    /// better at walls.
+    fn dofs_at_end(&self, cells: usize, side: Side) -> Range<usize> {
+        let row = match side {
+            Side::Min => self.row(cells, 0, T::zero()),
+            Side::Max => self.row(cells, cells.saturating_sub(1), T::one()),
+        };
+        let felt = row
+            .dof
+            .iter()
+            .zip(&row.value)
+            .filter(|(_, value)| !value.is_zero());
+        let (first, end) = felt.fold((usize::MAX, 0), |(first, end), (&dof, _)| {
+            (first.min(dof), end.max(dof + 1))
+        });
+        first.min(end)..end
     }
 
     /// Where, in cell sizes from the axis's lower end, the value that belongs to `dof` is taken when a field is interpolated:
@@ -155,6 +178,24 @@ pub fn dof_window<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     low..high
 }
 
+/// Visits the DOFs that a wall at `face` holds, of those in the grid's window.
+pub fn for_each_on_face<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
+    family: &A,
+    grid: &Grid<T, D>,
+    face: Face,
+    mut f: impl FnMut(usize),
+) {
+    let shape = dofs(family, grid);
+    let held = family.dofs_at_end(grid.cells()[face.axis], face.side);
+    let first = grid.window().first()[face.axis] as usize;
+    let stride: usize = shape[..face.axis].iter().product();
+    for dof in 0..shape.iter().product() {
+        if held.contains(&(first + dof / stride % shape[face.axis])) {
+            f(dof);
+        }
+    }
+}
+
 /// Visits the product functions at `x`: values multiply, a gradient takes the slope along its own axis.
 #[inline(always)]
 pub fn for_each<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
@@ -253,6 +294,9 @@ macro_rules! tensor_product_family {
 
             const CONSTANT_GRADIENT: bool = D == 1 && $degree == 1 && $width == 2;
 
+            const HOLDS_ABOUT: bool =
+                <$family as $crate::basis::AxisFamily<T, $width>>::HOLDS_ABOUT;
+
             #[inline(always)]
             fn factors<V: $crate::lanes::SideBySide<T>>(
                 &self,
@@ -273,6 +317,15 @@ macro_rules! tensor_product_family {
 
             fn dofs(&self, grid: &$crate::grid::Grid<T, D>) -> [usize; D] {
                 $crate::basis::tensor::dofs::<T, D, $width, _>(self, grid)
+            }
+
+            fn for_each_on_face(
+                &self,
+                grid: &$crate::grid::Grid<T, D>,
+                face: $crate::grid::Face,
+                f: impl FnMut(usize),
+            ) {
+                $crate::basis::tensor::for_each_on_face::<T, D, $width, _>(self, grid, face, f);
             }
 
             fn interpolation_point(

@@ -25,7 +25,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hill<T> {
     type State = ();
 
     fn limits(&self) -> &'static str {
-        "in one dimension Hill's law has a meaning below its modulus only, so take smaller steps or another law"
+        "in one dimension Hill's law has a meaning below its modulus only, so take smaller steps or another \
+         law"
     }
 
     /// Also refuses a stress that is not a number.

@@ -38,6 +38,24 @@ use crate::scalar::Scalar;
 ///
 /// Implement it for a law of your own (see `examples/own_law.rs`); [`crate::testing::check_law`] checks that the
 /// parts agree with each other.
+///
+/// # What an increment holds
+/// `increment` is $\Delta t\,\nabla v$, all of it: its symmetric part strains the material, its antisymmetric part turns it. The
+/// deformation gradient after the step is $F_{n+1} = (1 + \text{increment}) F_n$. Below three dimensions
+/// nothing moves along the axes that the grid does not have (plane strain, uniaxial strain).
+///
+/// The step turns no stress and no state: **objectivity is the law's own care**. A law of small strain takes
+/// the symmetric part and leaves rotations alone; a rate at large strain adds what turns the stress,
+/// $W\sigma - \sigma W$ with the antisymmetric part $W$ ([`Hill`]); a law that keeps $F$ or $b = F F^T$ carries that
+/// by $1 + \text{increment}$ and needs no more ([`NeoHookean`], [`ElasticStretch`]).
+///
+/// # When it is asked
+/// Once a step and particle, after the particle has moved and before its volume follows:
+/// [`ConstitutiveLaw::update_over`], then [`ConstitutiveLaw::knows`]. Stress and state come as the last step
+/// left them, or as a reconstruction that relaxes has moved them by [`ConstitutiveLaw::strain_for`] and an
+/// `update` over it. [`crate::stepper::Stepper::critical_step`] and the checks call
+/// `update` on copies, so it must change nothing but its arguments. `Default` of the state knows no constants of the law: keep what
+/// scales with them as a ratio to them.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no constitutive law for scalar `{T}` in `{D}` dimensions"
 )]
@@ -61,7 +79,7 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Send + Sync {
     fn large_strain(&self) -> bool;
 
     /// Carries stress (Cauchy, Pa, tension positive) and state over the displacement gradient
-    /// `increment` of one step: row = component, column = derivative, taken at the step's start.
+    /// `increment` of one step, strain and rotation: row = component, column = derivative, taken at the step's start.
     fn update(&self, increment: &SMatrix<T, D, D>, stress: &mut SMatrix<T, D, D>, state: &mut Self::State);
 
     /// The same over a step that takes `dt` (s), for laws that feel the rate of strain; this is what a step calls.

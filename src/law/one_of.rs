@@ -1,4 +1,5 @@
-//! Enums of laws, which answer as the law that they are: what chooses a law at run time and must lose nothing of it.
+//! Enums of laws, which answer as the law that they are: what chooses a law at run time and must lose nothing
+//! of it.
 
 /// The state of an enum of laws, as one of its laws sees it.
 pub(crate) trait Holds<S>: Sized {
@@ -37,9 +38,10 @@ pub(crate) fn change_own<S: Copy + Default, H: Holds<S>>(state: &mut H, change: 
     *state = H::of(own);
 }
 
-/// Defines an enum of laws `Name<T>` with the given generics and dimension of its `ConstitutiveLaw`, and a state that
-/// [`Holds`] that of each law. **Every** item of the trait is forwarded, those with a default too; an item that the trait
-/// gains and this macro does not is an error at compile time (`EVERY_ITEM_IS_FORWARDED`).
+/// Defines an enum of laws `Name<T>` with the given generics and dimension of its `ConstitutiveLaw`, and a
+/// state that [`Holds`] that of each law. **Every** item of the trait is forwarded, those with a default too;
+/// an item that the trait gains and this macro does not is an error at compile time
+/// (`EVERY_ITEM_IS_FORWARDED`).
 macro_rules! one_of_laws {
     (
         $(#[$meta:meta])*
@@ -52,7 +54,8 @@ macro_rules! one_of_laws {
             $($law($law<T>)),+
         }
 
-        impl<T: $crate::scalar::Scalar, $($generics)*> $crate::law::ConstitutiveLaw<T, $dimension> for $name<T> {
+        impl<T: $crate::scalar::Scalar, $($generics)*>
+            $crate::law::ConstitutiveLaw<T, $dimension> for $name<T> {
             type State = $state;
 
             fn limits(&self) -> &'static str {
@@ -62,7 +65,11 @@ macro_rules! one_of_laws {
             }
 
             #[inline(always)]
-            fn knows(&self, stress: &::nalgebra::SMatrix<T, $dimension, $dimension>, state: &Self::State) -> bool {
+            fn knows(
+                &self,
+                stress: &::nalgebra::SMatrix<T, $dimension, $dimension>,
+                state: &Self::State,
+            ) -> bool {
                 match self {
                     $(Self::$law(law) => $crate::law::one_of::ask_own(state, |own| law.knows(stress, own))),+
                 }
@@ -99,7 +106,9 @@ macro_rules! one_of_laws {
             ) {
                 match self {
                     $(Self::$law(law) => {
-                        $crate::law::one_of::change_own(state, |own| law.update_over(dt, increment, stress, own));
+                        $crate::law::one_of::change_own(state, |own| {
+                            law.update_over(dt, increment, stress, own);
+                        });
                     })+
                 }
             }
@@ -116,7 +125,9 @@ macro_rules! one_of_laws {
 
             fn elastic_constants(&self) -> Option<$crate::law::Moduli<T>> {
                 match self {
-                    $(Self::$law(law) => $crate::law::ConstitutiveLaw::<T, $dimension>::elastic_constants(law)),+
+                    $(Self::$law(law) => {
+                        $crate::law::ConstitutiveLaw::<T, $dimension>::elastic_constants(law)
+                    })+
                 }
             }
 
@@ -129,7 +140,9 @@ macro_rules! one_of_laws {
             ) -> Option<::nalgebra::SMatrix<T, $dimension, $dimension>> {
                 match self {
                     $(Self::$law(law) => {
-                        $crate::law::one_of::ask_own(state, |own| law.strain_for(change, density, stress, own))
+                        $crate::law::one_of::ask_own(state, |own| {
+                            law.strain_for(change, density, stress, own)
+                        })
                     })+
                 }
             }
@@ -196,7 +209,8 @@ const EVERY_ITEM_IS_FORWARDED: () = assert!(
 );
 const _: () = EVERY_ITEM_IS_FORWARDED;
 
-/// Number of lines that begin a function, type or constant, from the line that holds `head` to the line that closes its block.
+/// Number of lines that begin a function, type or constant, from the line that holds `head` to the line that
+/// closes its block.
 const fn items(text: &[u8], head: &[u8]) -> usize {
     let mut at = 0;
     while !starts_with(text, at, head) {

@@ -18,9 +18,9 @@ use crate::scalar::Scalar;
 /// with a velocity of its own. Everything a phase adds to the step stands under `if P::COUPLED` or `if P::FLOWS`, since
 /// zero-sized data alone leave empty loops behind.
 ///
-/// The hooks below [`Phase::validate`] are asked only of a phase that [`Phase::FLOWS`], which must write each of them: one that
-/// it forgets is an error at compile time, as soon as a stepper is made of it. Masses and forces of the liquid are
-/// those of [`mod@crate::stepper`]'s second balance of momentum.
+/// The hooks below [`Phase::validate`] are asked only of a phase that [`Phase::FLOWS`], which must write each
+/// of them: one that it forgets is an error at compile time, as soon as a stepper is made of it. Masses and
+/// forces of the liquid are those of [`mod@crate::stepper`]'s second balance of momentum.
 pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
     /// Whether there is anything but the solid.
     const COUPLED: bool;

@@ -177,9 +177,10 @@ pub struct Crossed<T> {
 
 /// Turns particle data into quadrature points with weighted values.
 ///
-/// Five items must be written. Each constant that says more goes with the methods that its words name: a constant without
-/// its method, or constants that contradict each other, are errors at compile time, as soon as a stepper is made of the type.
-/// [`crate::testing::check_reconstruction`] checks that all methods stream what `integrate` and `integrate_conserved` do.
+/// Five items must be written. Each constant that says more goes with the methods that its words name: a
+/// constant without its method, or constants that contradict each other, are errors at compile time, as soon
+/// as a stepper is made of the type. [`crate::testing::check_reconstruction`] checks that all methods stream
+/// what `integrate` and `integrate_conserved` do.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not reconstruct scalar `{T}` in `{D}` dimensions",
     note = "CubicSpline is global and exists in 1-D only; Taylor<T, D, NB> takes NB = 3, 6, 10 for D = 1, 2, 3"
@@ -254,7 +255,8 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         const { assert!(!Self::BY_CELLS, "BY_CELLS wants an own `integrate_cells`") };
     }
 
-    /// What [`Reconstruction::integrate_conserved`] streams in the given `cells`, likewise, where not the particles are streamed.
+    /// What [`Reconstruction::integrate_conserved`] streams in the given `cells`, likewise, where not the
+    /// particles are streamed.
     fn integrate_conserved_cells<Q: Field<T>>(
         &self,
         _cloud: &Cloud<'_, T, D>,
@@ -376,3 +378,49 @@ pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction
     assert!(!R::BY_FOUR || R::BY_CELLS, "BY_FOUR wants BY_CELLS");
     assert!(!R::KEEPS_FITS || R::BY_CELLS, "KEEPS_FITS wants BY_CELLS");
 }
+
+/// A constant without its method does not compile:
+///
+/// ```compile_fail,E0080
+/// use materialpoint::field::Field;
+/// use materialpoint::grid::Grid;
+/// use materialpoint::particles::Bins;
+/// use materialpoint::reconstruction::{Cloud, Point, Reconstruction, Shepard};
+/// use nalgebra::{SVector, vector};
+///
+/// struct Forgetful;
+///
+/// impl Reconstruction<f64, 1> for Forgetful {
+///     const FIELDS_AT_PARTICLES: bool = true;
+///     const AMOUNTS_AT_PARTICLES: bool = true;
+///     const BY_CELLS: bool = true; // but no `integrate_cells`
+///
+///     fn prepare(&mut self, _cloud: &Cloud<'_, f64, 1>) {}
+///
+///     fn integrate<Q: Field<f64>>(
+///         &mut self,
+///         cloud: &Cloud<'_, f64, 1>,
+///         value: impl Fn(usize) -> Q,
+///         sink: impl FnMut(&Point<f64, 1>, Q),
+///     ) {
+///         Shepard.integrate(cloud, value, sink);
+///     }
+///
+///     fn integrate_conserved<Q: Field<f64>>(
+///         &mut self,
+///         cloud: &Cloud<'_, f64, 1>,
+///         amount: impl Fn(usize) -> Q,
+///         sink: impl FnMut(&Point<f64, 1>, Q),
+///     ) {
+///         Shepard.integrate_conserved(cloud, amount, sink);
+///     }
+/// }
+///
+/// let grid = Grid::new(vector![0.0], vector![1.0], [1]).unwrap();
+/// let positions = [vector![0.5]];
+/// let bins = Bins::new(&grid, &positions).unwrap();
+/// let cloud = Cloud::new(&grid, &bins, &positions, &[1.0]).unwrap();
+/// Forgetful.integrate_cells(&cloud, 0..1, |_| 1.0, |_, _| ());
+/// ```
+#[cfg(doctest)]
+struct Forgotten;

@@ -9,9 +9,9 @@ use crate::record::Record;
 use crate::scalar::Scalar;
 
 one_of_laws!(
-    /// One of those laws. One type for all: another for each would multiply the steppers to compile, and they take seconds
-    /// each. The price is memory: a particle has room for the longest history, Drucker-Prager's eight numbers in two
-    /// dimensions, and a word that says whose it is.
+    /// One of those laws. One type for all: another for each would multiply the steppers to compile, and they
+    /// take seconds each. The price is memory: a particle has room for the longest history, Drucker-Prager's
+    /// eight numbers in two dimensions, and a word that says whose it is.
     pub(super) enum HistoryLaw {
         NeoHookean,
         StVenantKirchhoff,

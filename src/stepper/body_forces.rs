@@ -17,9 +17,10 @@ where
     L: ConstitutiveLaw<T, D>,
     P: Phase<T, D>,
 {
-    /// Sets the force per mass (N/kg) of every particle, a function of where it was at the start, beside the uniform one of
-    /// [`super::Forcing`]. It acts in every step until it is set again; the first call allocates. Where a liquid flows through the pores it is
-    /// the force per mass of both, the solid and the liquid that the particle holds.
+    /// Sets the force per mass (N/kg) of every particle, a function of where it was at the start, beside the
+    /// uniform one of [`super::Forcing`]. It acts in every step until it is set again; the first call
+    /// allocates. Where a liquid flows through the pores it is the force per mass of both, the solid and the
+    /// liquid that the particle holds.
     pub fn set_body_forces(&mut self, mut force: impl FnMut(&SVector<T, D>) -> SVector<T, D>) {
         // By the particles' numbers: their order in memory may change before a step uses them.
         self.body_forces.resize(self.particles.len(), SVector::zeros());
@@ -40,7 +41,8 @@ where
         }
     }
 
-    /// The same of two: the mixture feels `(m_s + n m_w) b`, the liquid, whose balance is per porosity `n`, feels `m_w b`.
+    /// The same of two: the mixture feels `(m_s + n m_w) b`, the liquid, whose balance is per porosity `n`,
+    /// feels `m_w b`.
     pub(super) fn add_body_forces_to_both(&mut self) {
         let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
         let (whole, liquid) = (&mut self.dofs.force, &mut self.liquid.force);

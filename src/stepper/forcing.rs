@@ -66,7 +66,8 @@ impl<T: Scalar, const D: usize> FaceCondition<T, D> {
     }
 }
 
-/// What the liquid in the pores meets at a face, for phases with a liquid that flows; a step of another phase refuses a pressure.
+/// What the liquid in the pores meets at a face, for phases with a liquid that flows; a step of another phase
+/// refuses a pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PoreCondition<T> {
     /// It does not pass: at a held face it moves as the face does, at a body's surface as the solid there.

@@ -29,6 +29,7 @@ mod critical;
 mod deform;
 mod diagnostics;
 mod dofs;
+mod faces;
 mod forces;
 mod forcing;
 mod ghost;
@@ -57,7 +58,7 @@ use num_traits::Zero;
 
 use crate::basis::BasisFamily;
 use crate::error::{SetupError, StepError};
-use crate::grid::{Face, Grid};
+use crate::grid::Grid;
 use crate::law::ConstitutiveLaw;
 use crate::mass::VelocityMass;
 use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
@@ -144,6 +145,8 @@ where
     body_forces: Vec<SVector<T, D>>,
     /// DOFs of each face, in the order of [`Face::all`].
     face_dofs: Vec<Vec<u32>>,
+    /// Of each a DOF that has a value there and is not among them.
+    left_out: Vec<Option<usize>>,
     velocity_mass: VelocityMass,
     time: T,
     steps: usize,
@@ -258,6 +261,7 @@ where
             pairs: Pairs::new(R::PARTICLE_MATRIX || sums_matrix),
             body_forces: Vec::new(),
             face_dofs: Vec::new(),
+            left_out: Vec::new(),
             velocity_mass,
             time: T::zero(),
             steps: 0,
@@ -287,13 +291,7 @@ where
                 self.joint = liquid::Joint::new(basis, grid, self.particles.len());
             }
         }
-        self.face_dofs = Face::all::<D>()
-            .map(|face| {
-                let mut list = Vec::new();
-                basis.for_each_on_face(grid, face, |dof| list.push(dof as u32));
-                list
-            })
-            .collect();
+        (self.face_dofs, self.left_out) = faces::face_dofs(basis, grid);
     }
 
     /// Lets reconstruction and basis see the particles and stream the widest values once, so that all they allocate is there
@@ -322,9 +320,10 @@ where
     /// global one, to which a caller that belongs to none sends the whole step. Any number of them gives the bits of one.
     ///
     /// # Errors
-    /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the law: the particles then
-    /// hold the state in which that was noticed. If the step's size makes no sense, or `forcing` has a condition that the phase does
-    /// not know (friction where a liquid flows, a pore pressure where none does): nothing has moved then.
+    /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the
+    /// law: the particles then hold the state in which that was noticed. If the step's size makes no sense,
+    /// or `forcing` has a condition that the phase does not know (friction where a liquid flows, a pore
+    /// pressure where none does) or a wall that the basis would let slip: nothing has moved then.
     pub fn step(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
         self.step_with_kick(dt, dt, forcing)
     }
@@ -370,6 +369,7 @@ where
             }
         }
         forcing.suits_phase(P::FLOWS)?;
+        self.walls_can_be_held(forcing)?;
         let mut outcome = Ok(Energy::none());
         within_pool(self.is_worth_sending(), &mut || {
             outcome = self.step_here([kick, dt], forcing, measure);

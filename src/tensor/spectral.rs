@@ -8,7 +8,8 @@ use crate::scalar::Scalar;
 /// Sweeps after which the iteration ends whatever is left. Convergence is quadratic: a 3 x 3 tensor takes three to five.
 const SWEEPS: usize = 12;
 
-/// Sweeps without anything to turn that are made for the derivatives that numbers carry: each squares what is left of them.
+/// Sweeps without anything to turn that are made for the derivatives that numbers carry: each squares what is
+/// left of them.
 const SWEEPS_OF_DERIVATIVES: usize = 2;
 
 /// Principal values and axes of a symmetric tensor, `A = sum_k value_k axis_k axis_k^T`, in no particular order.
@@ -18,12 +19,13 @@ const SWEEPS_OF_DERIVATIVES: usize = 2;
 /// others keeps its digits (Demmel & Veselic 1992), as far as the entries determine it.
 ///
 /// # Derivatives
-/// Axes have no derivative where two values are equal, but isotropic functions of the tensor have one. So with dual numbers the axes
-/// of values that are equal, or nearly so, are turned without derivatives, and what these leave off the diagonal is kept as
-/// [`Spectral::rest`]: `A = Q (diag(values) + rest) Q^T` holds with all derivatives. A function of the tensor has
+/// Axes have no derivative where two values are equal, but isotropic functions of the tensor have one. So
+/// with dual numbers the axes of values that are equal, or nearly so, are turned without derivatives, and
+/// what these leave off the diagonal is kept as [`Spectral::rest`]: `A = Q (diag(values) + rest) Q^T` holds
+/// with all derivatives. A function of the tensor has
 /// `f[value_p, value_q] rest_pq` there, with the divided difference of `f`, which is `f'` for equal values (Daleckii & Krein 1965).
-/// First derivatives are right for any values, higher ones where all values differ by more than the cube root of the
-/// scalar's epsilon.
+/// First derivatives are right for any values, higher ones where all values differ by more than the cube root
+/// of the scalar's epsilon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spectral<T, const D: usize> {
     /// Principal values.
@@ -33,7 +35,8 @@ pub struct Spectral<T, const D: usize> {
     rest: SMatrix<T, D, D>,
 }
 
-/// Whether numbers of this type are no more than their value. Any other may carry derivatives where its value is zero.
+/// Whether numbers of this type are no more than their value. Any other may carry derivatives where its value
+/// is zero.
 #[inline(always)]
 pub(crate) fn is_plain<T: 'static>() -> bool {
     is::<T, f64>() || is::<T, f32>()
@@ -96,7 +99,8 @@ impl<T: Scalar, const D: usize> Spectral<T, D> {
         }
     }
 
-    /// What is left off the diagonal in the principal axes, symmetric: zeros, but for the derivatives that numbers carry.
+    /// What is left off the diagonal in the principal axes, symmetric: zeros, but for the derivatives that
+    /// numbers carry.
     #[inline(always)]
     pub fn rest(&self) -> &SMatrix<T, D, D> {
         &self.rest
@@ -116,7 +120,8 @@ impl<T: Scalar, const D: usize> Spectral<T, D> {
         SMatrix::from_fn(|i, j| a[(i.min(j), i.max(j))])
     }
 
-    /// The same with the given entries off the diagonal in those axes, `rest(p, q)` for `p < q`; plain numbers have none.
+    /// The same with the given entries off the diagonal in those axes, `rest(p, q)` for `p < q`; plain
+    /// numbers have none.
     #[inline]
     pub fn with_values_and_rest(
         &self,
@@ -138,7 +143,8 @@ impl<T: Scalar, const D: usize> Spectral<T, D> {
 
     /// The isotropic tensor function that applies `f` to each principal value.
     ///
-    /// The divided difference of values that are nearly equal is that over what is left between them, about their mean.
+    /// The divided difference of values that are nearly equal is that over what is left between them, about
+    /// their mean.
     #[inline]
     pub fn map(&self, mut f: impl FnMut(T) -> T) -> SMatrix<T, D, D> {
         let values = self.values.map(&mut f);
@@ -180,8 +186,9 @@ fn annihilate<T: Scalar, const D: usize>(
     true
 }
 
-/// The same for numbers that may be more than their value. A rotation that takes derivatives with it has one over the difference of
-/// the values in them, so between nearly equal values the rotation is one of plain numbers, and `a_pq` keeps what that leaves.
+/// The same for numbers that may be more than their value. A rotation that takes derivatives with it has one
+/// over the difference of the values in them, so between nearly equal values the rotation is one of plain
+/// numbers, and `a_pq` keeps what that leaves.
 fn annihilate_with_derivatives<T: Scalar, const D: usize>(
     a: &mut SMatrix<T, D, D>,
     axes: &mut SMatrix<T, D, D>,

@@ -40,7 +40,7 @@ pub enum Property {
     NonNegative,
     /// Gradients sum to zero.
     GradientSum,
-    /// On a face of the grid only the face's own DOFs have a value.
+    /// On a face of the grid only the face's own DOFs have a value, unless the basis says otherwise.
     FaceValues,
     /// DOFs whose values overlap differ by no more than the half band width.
     HalfBand,

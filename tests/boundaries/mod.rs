@@ -1,5 +1,7 @@
 //! Boundary conditions: told velocities, tractions, held B-spline ends.
 
+mod own_bases;
+
 use materialpoint::method::Method;
 use materialpoint::run::{Outcome, run};
 use materialpoint::scene::Scene;

@@ -1,7 +1,8 @@
-//! Tangents of the laws that work in principal axes, by dual numbers: wherever values are equal or axes lie along the grid's,
-//! axes have no derivative, or one that a value of zero hides, but the stress has one.
+//! Tangents of the laws that work in principal axes, by dual numbers: wherever values are equal or axes lie
+//! along the grid's, axes have no derivative, or one that a value of zero hides, but the stress has one.
 //!
-//! Expected: closed forms, and extrapolated central differences of the stress in `f64`, whose own error is some 1e-10 of the modulus.
+//! Expected: closed forms, and extrapolated central differences of the stress in `f64`, whose own error is
+//! some 1e-10 of the modulus.
 
 use materialpoint::law::{
     ConeMatch, ConstitutiveLaw, DruckerPrager, Hencky, Moduli, NeoHookean, Strength, VonMises,
@@ -99,8 +100,8 @@ fn compare<A, B, const D: usize>(
     }
 }
 
-/// Of each law, elastic and plastic, where the last increment is along the grid's axes with distinct values, with equal ones, and
-/// in general position.
+/// Of each law, elastic and plastic, where the last increment is along the grid's axes with distinct values,
+/// with equal ones, and in general position.
 fn at_every_kind_of_state<const D: usize>() {
     let diagonal =
         |values: [f64; 3]| SMatrix::<f64, D, D>::from_fn(|i, j| if i == j { values[i] } else { 0.0 });
@@ -122,7 +123,8 @@ fn at_every_kind_of_state<const D: usize>() {
         compare(name, (&metal(), &metal()), &[], last);
         // Pressed together first, so that the cone and not its apex is met.
         compare(name, (&soil(), &soil()), &[diagonal([-0.05; 3])], last);
-        // And after a way that the axes turned on. Metal that is pressed evenly would stay where plastic flow begins.
+        // And after a way that the axes turned on. Metal that is pressed evenly would stay where plastic flow
+        // begins.
         if name != "all equal" {
             compare(name, (&metal(), &metal()), &[general], last);
         }
@@ -162,7 +164,8 @@ fn hooke<const D: usize>(path: &[SMatrix<f64, D, D>]) {
             tangent(&metal(), path, &SMatrix::zeros(), (i, j)),
             tangent(&soil(), path, &SMatrix::zeros(), (i, j)),
         ] {
-            // Strains of 1e-11 change the tangent by some times as much, and differences over them lose as little.
+            // Strains of 1e-11 change the tangent by some times as much, and differences over them lose as
+            // little.
             assert!(
                 (found - expected).amax() < 1e-9,
                 "({i}, {j}): {found} instead of {expected}"
@@ -171,8 +174,8 @@ fn hooke<const D: usize>(path: &[SMatrix<f64, D, D>]) {
     }
 }
 
-/// Of values that differ: `(sigma_1 - sigma_2) / (b_1 - b_2)` times the change of `b_12`, here by shear of a bar that is
-/// stretched, over the whole range from equal to far apart.
+/// Of values that differ: `(sigma_1 - sigma_2) / (b_1 - b_2)` times the change of `b_12`, here by shear of a
+/// bar that is stretched, over the whole range from equal to far apart.
 #[test]
 fn shear_of_a_stretched_bar_has_its_closed_form() {
     for exponent in -16..0 {

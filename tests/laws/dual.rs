@@ -1,6 +1,7 @@
 //! A scalar that carries a derivative: the least of dual numbers that a law computes with.
 //!
-//! Comparisons and `is_zero` see the value alone, as those of dual numbers do: a number that is zero may have a derivative.
+//! Comparisons and `is_zero` see the value alone, as those of dual numbers do: a number that is zero may have
+//! a derivative.
 
 mod real_field;
 mod traits;

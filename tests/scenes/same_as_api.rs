@@ -1,7 +1,8 @@
 //! A scene is the stepper that one would set up by hand: the same bits, and the same errors.
 //!
-//! Scenes choose laws at run time; whatever a law says must pass through that choice unchanged. Relaxed Taylor least squares ask
-//! a law for more than any other method does: strain for a stress, wave speed, start under stress.
+//! Scenes choose laws at run time; whatever a law says must pass through that choice unchanged. Relaxed
+//! Taylor least squares ask a law for more than any other method does: strain for a stress, wave speed, start
+//! under stress.
 
 use materialpoint::basis::Linear;
 use materialpoint::error::StepError;
@@ -59,9 +60,13 @@ impl Case {
             })
             .collect();
         let text = format!(
-            "title = \"Box\"\n\n[grid]\nmin = [{}]\nmax = [{}]\ncells = [{}]\n\n[time]\nstep = {DT:?}\nend = {:?}\n\n[method]\nbasis = \"linear\"\n\
-             reconstruction = \"relaxed-taylor\"\n\n[material]\nstrain = \"{}\"\nlaw.{law}\ndensity = 2.0\n\n[[body]]\n\
-             min = [{}]\nmax = [{}]\nparticles_per_cell = [{}]\nvelocity = [{velocity}]\n{stress}\ninitialise = \"exact\"\n{walls}",
+            "title = \"Box\"\n\n\
+             [grid]\nmin = [{}]\nmax = [{}]\ncells = [{}]\n\n\
+             [time]\nstep = {DT:?}\nend = {:?}\n\n\
+             [method]\nbasis = \"linear\"\nreconstruction = \"relaxed-taylor\"\n\n\
+             [material]\nstrain = \"{}\"\nlaw.{law}\ndensity = 2.0\n\n\
+             [[body]]\nmin = [{}]\nmax = [{}]\nparticles_per_cell = [{}]\n\
+             velocity = [{velocity}]\n{stress}\ninitialise = \"exact\"\n{walls}",
             list("0.0"),
             list("1.0"),
             list("4"),

@@ -72,8 +72,8 @@ where
     sum
 }
 
-/// From rest, without stress, the mixture gains `dt sum (m_s + n m_w) b`, however the force varies; and under a uniform one each
-/// phase falls with the acceleration `b`, as with the same force in the forcing.
+/// From rest, without stress, the mixture gains `dt sum (m_s + n m_w) b`, however the force varies; and under
+/// a uniform one each phase falls with the acceleration `b`, as with the same force in the forcing.
 fn check<const D: usize, B, R>(basis: B, reconstruction: R)
 where
     B: BasisFamily<f64, D>,

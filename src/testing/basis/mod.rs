@@ -1,6 +1,7 @@
 //! Check of a basis family.
 
 mod derivative;
+mod doors;
 mod pointwise;
 mod sample;
 mod span;
@@ -39,9 +40,11 @@ impl BasisClaims {
     }
 }
 
-/// Checks `basis` on `grid`: at the given `points` the same DOFs in the same order as elsewhere in the cell, partition of
-/// unity, non-negative values, gradients that sum to zero, DOF numbers in range, overlap within the half band, values on
-/// faces, values at fixed points; and from points of its own the `claims` and that no DOF is out of reach.
+/// Checks `basis` on `grid`: at the given `points` the same DOFs in the same order as elsewhere in the cell,
+/// partition of unity, non-negative values, gradients that sum to zero, DOF numbers in range, overlap within
+/// the half band, values on faces, values at fixed points, and what the fast ways of a step see
+/// ([`BasisFamily::factors`], what [`BasisFamily::AT_FIXED_POINTS`] and [`BasisFamily::CONSTANT_GRADIENT`]
+/// say); and from points of its own the `claims` and that no DOF is out of reach.
 ///
 /// Choose points on edges and faces too. The cost grows with the square of the number of DOFs: a few cells along
 /// each axis are enough, and different numbers of them find more.

@@ -2,8 +2,8 @@
 
 use nalgebra::SVector;
 
-use super::cell_of;
 use super::sample::{Sample, Visitor, slope_bound, value_error};
+use super::{cell_of, doors};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Face, Grid, Side};
 use crate::scalar::Scalar;
@@ -26,6 +26,10 @@ pub(super) fn check<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     }
     half_band(&moving, x, basis.half_band(grid))?;
     same_values(&moving, &fixed, x, error)?;
+    doors::check(basis, grid, &cell, x)?;
+    if B::HOLDS_ABOUT {
+        return Ok(());
+    }
     Face::all::<D>().try_for_each(|face| on_face(basis, grid, face, x, error))
 }
 

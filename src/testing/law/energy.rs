@@ -40,8 +40,8 @@ pub(super) fn is_work<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
     worst.judge(Property::EnergyIsWork, claimed)
 }
 
-/// The leading term in the strain, which is of second order: energy and work at a strain so small that what follows, of third order,
-/// is hardly more than the round-off of an energy.
+/// The leading term in the strain, which is of second order: energy and work at a strain so small that what
+/// follows, of third order, is hardly more than the round-off of an energy.
 pub(super) fn at_small_strain<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
     law: &L,
     sample: &LawSample<T>,

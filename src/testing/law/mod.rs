@@ -31,16 +31,18 @@ pub struct LawClaims {
     pub wave_speed_is_sharp: bool,
     /// Stress follows a rotation of the material. Small-strain laws do not; without meaning in 1-D.
     pub objective: bool,
-    /// Stress does not fall while the strain grows: in simple shear, in 1-D in compression. False for what softens.
+    /// Stress does not fall while the strain grows: in simple shear, in 1-D in compression. False for what
+    /// softens.
     pub stable: bool,
 }
 
 /// Checks that the parts of `law` agree with each other: no stress and energy at rest, nothing from a zero
-/// increment, stress linear in small increments, wave speed, energy, rotation and stability as claimed; at small strain an energy that is
-/// the work in any case; elastic constants, if it has any, that are the stiffness at rest; the strain for a change of stress;
-/// a start that keeps its stress; that it knows the stresses that it gives. Over times from 1 us to 1000 s
-/// (`update_over`) material that is held gains no energy, no path gives back more than was put in, and `update` is the
-/// limit of slow strain (a viscosity) or of fast strain (a relaxation).
+/// increment, stress linear in small increments, wave speed, energy, rotation and stability as claimed; at
+/// small strain an energy that is the work in any case; elastic constants, if it has any, that are the
+/// stiffness at rest; the strain for a change of stress; a start that keeps its stress; that it knows the
+/// stresses that it gives. Over times from 1 us to 1000 s (`update_over`) material that is held gains no
+/// energy, no path gives back more than was put in, and `update` is the limit of slow strain (a viscosity) or
+/// of fast strain (a relaxation).
 ///
 /// Derivatives are differences from states of their own, paths are cut into many equal increments, and what
 /// these allow is of their order: nothing in the law's units needs to be given.

@@ -16,8 +16,9 @@ const STEPS: usize = 64;
 /// Sizes of a step (s).
 const TIMES: [f64; 4] = [1e-6, 1e-3, 1.0, 1e3];
 
-/// Strained to the end of each path, then held: what was put in covers the energy, and that does not grow while nothing moves. Of a
-/// law whose energy is not its work, energy and work of rates without a potential differ by the strain.
+/// Strained to the end of each path, then held: what was put in covers the energy, and that does not grow
+/// while nothing moves. Of a law whose energy is not its work, energy and work of rates without a potential
+/// differ by the strain.
 pub(super) fn no_energy_from_nothing<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
     law: &L,
     sample: &LawSample<T>,

@@ -13,10 +13,11 @@ use crate::testing::worst::Worst;
 /// Increments of the path.
 const STEPS: usize = 256;
 
-/// Simple shear, in one dimension compression, to the sample's strain: the largest drop of the stress below what it has been.
+/// Simple shear, in one dimension compression, to the sample's strain: the largest drop of the stress below
+/// what it has been.
 ///
-/// Shear keeps the volume, so that stress per current area has nothing to lose by it; axes that turn by the strain change
-/// the component by the strain's square.
+/// Shear keeps the volume, so that stress per current area has nothing to lose by it; axes that turn by the
+/// strain change the component by the strain's square.
 pub(super) fn check<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
     law: &L,
     sample: &LawSample<T>,

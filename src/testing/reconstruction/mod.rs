@@ -1,6 +1,7 @@
 //! Check of a reconstruction.
 
 mod amounts;
+mod doors;
 mod fields;
 mod stream;
 
@@ -40,8 +41,10 @@ pub struct ReconstructionClaims {
 
 /// Checks `reconstruction` on the particles at `positions` with `volumes`, which should be well spread (a fit
 /// through almost coincident points loses digits that this check would count as errors): stream points lie in
-/// their cells and are the same for every field; the particles are streamed where the associated constants say
-/// so; streaming is linear; `prepare` forgets; weights, conservation, reproduction and integrals as claimed.
+/// their cells and are the same for every field; the particles are streamed where the associated constants
+/// say so; streaming is linear; `prepare` forgets; cells streamed alone ([`Reconstruction::BY_CELLS`]) and
+/// four at a time ([`Reconstruction::BY_FOUR`]) stream the same; weights, conservation, reproduction and
+/// integrals as claimed.
 ///
 /// The cost grows with the square of the number of particles.
 ///
@@ -73,6 +76,7 @@ pub fn check_reconstruction<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     reconstruction.prepare(&cloud);
     stream::check(reconstruction, &cloud, claims.measure)?;
     amounts::check(reconstruction, &cloud, claims.conserves_amounts)?;
+    doors::check(reconstruction, &cloud)?;
     fields::check(reconstruction, &cloud, claims)?;
     stream::forgets(reconstruction, &cloud)
 }

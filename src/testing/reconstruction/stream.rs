@@ -39,9 +39,9 @@ pub(super) fn uneven<T: Scalar>(p: usize) -> T {
     T::lit(((p * p * 7 + p * 3 + 5) % 31) as f64) / T::lit(15.0) - T::one()
 }
 
-/// Round-off of a stream point's value over the largest particle value, if no digits cancel: the particles of a cell are
-/// summed, and each enters with a local coordinate rounded like the number of cells, or like its distance from the origin
-/// in cells, at which positions themselves are rounded.
+/// Round-off of a stream point's value over the largest particle value, if no digits cancel: the particles of
+/// a cell are summed, and each enters with a local coordinate rounded like the number of cells, or like its
+/// distance from the origin in cells, at which positions themselves are rounded.
 pub(super) fn relative_error<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>) -> T {
     let fullest = (0..cloud.grid.cell_count()).map(|c| cloud.bins.particles_in(c).len());
     let cells = cloud.grid.cells().into_iter().max().unwrap_or(1);

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use materialpoint::basis::{AxisFamily, BSpline, BasisFamily, DualDomain, Linear, Row, tensor};
+use materialpoint::basis::{AxisFamily, BSpline, BasisFamily, DualDomain, FixedPoints, Linear, Row, tensor};
 use materialpoint::grid::{Cell, Face, Grid};
+use materialpoint::lanes::SideBySide;
 use materialpoint::scalar::Scalar;
 use materialpoint::testing::{BasisClaims, Expected, Failure, Property, check_basis};
 use nalgebra::{SVector, vector};
@@ -174,6 +175,8 @@ impl AxisFamily<f64, 4> for Faulty {
 }
 
 impl BasisFamily<f64, 1> for Faulty {
+    const AT_FIXED_POINTS: FixedPoints = FixedPoints::Other;
+
     fn degree(&self) -> usize {
         1
     }
@@ -259,4 +262,106 @@ fn a_failure_says_what_where_and_by_how_much() {
     );
     let outside = check_basis(&Linear, &grid, &[vector![9.0]], &BasisClaims::of_degree(1)).unwrap_err();
     assert_eq!(outside.property, Property::PointsInGrid);
+}
+
+/// What the fast ways of a uniform family can get wrong, in ways that the slow ones do not see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Lanes {
+    Right,
+    /// The slopes have the other sign.
+    Slope,
+    /// The values of the first two functions change places.
+    Value,
+    /// Every point is taken for the first one.
+    Neighbour,
+}
+
+/// Hats with lanes of their own.
+#[derive(Clone, Copy, Debug)]
+struct Fast(Lanes);
+
+impl<T: Scalar> AxisFamily<T, 2> for Fast {
+    fn dofs_on_axis(&self, cells: usize) -> usize {
+        cells + 1
+    }
+
+    fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, 2> {
+        Linear.row(cells, cell, unit)
+    }
+
+    const UNIFORM: bool = true;
+
+    fn lanes<V: SideBySide<T>>(&self, _cells: usize, _cell: usize, unit: V) -> ([V; 2], [V; 2]) {
+        let (zero, one) = (V::splat(T::zero()), V::splat(T::one()));
+        let (value, slope) = ([one - unit, unit], [zero - one, one]);
+        match self.0 {
+            Lanes::Right => (value, slope),
+            Lanes::Slope => (value, [one, zero - one]),
+            Lanes::Value => ([unit, one - unit], slope),
+            Lanes::Neighbour => {
+                let mut first = None;
+                let same = |x| [[*first.get_or_insert(x)], [x]];
+                let [[unit], _] = unit.one_by_one(same);
+                ([one - unit, unit], slope)
+            }
+        }
+    }
+}
+
+materialpoint::tensor_product_family!(Fast, width = 2, degree = 1);
+
+#[test]
+fn lanes_that_say_something_else_than_rows_are_found() {
+    for (lanes, expected) in [
+        (Lanes::Right, None),
+        (Lanes::Slope, Some(Property::Factors)),
+        (Lanes::Value, Some(Property::Factors)),
+        (Lanes::Neighbour, Some(Property::Factors)),
+    ] {
+        let claims = BasisClaims::of_degree(1);
+        assert_eq!(verdict(&Fast(lanes), &claims), expected, "{lanes:?}");
+        let plane = grid::<f64, 2>(3);
+        let found = check_basis(&Fast(lanes), &plane, &points(&plane), &claims);
+        assert_eq!(found.err().map(|failure| failure.property), expected, "{lanes:?}");
+    }
+}
+
+/// Dual domain that says nothing of points that stand still, so that four cells at once would see those that
+/// move.
+#[test]
+fn other_functions_at_fixed_points_must_be_announced() {
+    #[derive(Clone, Debug)]
+    struct Silent(DualDomain);
+
+    impl BasisFamily<f64, 1> for Silent {
+        fn degree(&self) -> usize {
+            1
+        }
+
+        fn dofs(&self, grid: &Grid<f64, 1>) -> [usize; 1] {
+            self.0.dofs(grid)
+        }
+
+        fn for_each(
+            &self,
+            grid: &Grid<f64, 1>,
+            cell: &Cell<1>,
+            x: &SVector<f64, 1>,
+            f: impl FnMut(usize, f64, SVector<f64, 1>),
+        ) {
+            self.0.for_each(grid, cell, x, f);
+        }
+
+        fn for_each_at_fixed_point(
+            &self,
+            grid: &Grid<f64, 1>,
+            cell: &Cell<1>,
+            x: &SVector<f64, 1>,
+            f: impl FnMut(usize, f64, SVector<f64, 1>),
+        ) {
+            Linear.for_each(grid, cell, x, f);
+        }
+    }
+    let found = verdict(&Silent(DualDomain::new()), &dual_domain(5));
+    assert_eq!(found, Some(Property::FixedPointsAsSaid));
 }

@@ -217,7 +217,8 @@ enum Fault {
     None,
     /// The energy is twice too large.
     Energy,
-    /// The stress off the plane is forgotten: the stiffness is that of plane stress, the constants are told all the same.
+    /// The stress off the plane is forgotten: the stiffness is that of plane stress, the constants are told
+    /// all the same.
     OffPlane,
     /// Strength falls with plastic strain.
     Softening,

@@ -1,13 +1,17 @@
 //! Reconstructions.
 
+use std::ops::Range;
+
 use materialpoint::field::Field;
 use materialpoint::grid::Grid;
+use materialpoint::lanes::Lanes;
 use materialpoint::reconstruction::{
-    Cloud, CubicSpline, Point, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor,
+    Cloud, CubicSpline, Four, Point, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor, Values,
 };
 use materialpoint::scalar::Scalar;
+use materialpoint::taylor::MOST_COMPONENTS;
 use materialpoint::testing::{Failure, Measure, Property, ReconstructionClaims, check_reconstruction};
-use nalgebra::SVector;
+use nalgebra::{SVector, vector};
 
 /// Particles of a layout without symmetry, four per cell and axis, that fill their cells.
 struct Sample<T, const D: usize> {
@@ -302,4 +306,157 @@ fn mistakes_are_found_and_named() {
         verdict::<false>(Mistake::FieldMovesPoints),
         Some(Property::SamePoints)
     );
+}
+
+/// The library's own, a thousand cells from the origin: positions are rounded there, and the check allows for
+/// it.
+#[test]
+fn far_from_the_origin_the_claims_are_kept_too() {
+    let grid = Grid::new(vector![1000.0], vector![1001.0], [4]).unwrap();
+    let near = sample::<f64, 1>(4);
+    let (from, size) = (near.grid.min()[0], near.grid.max()[0] - near.grid.min()[0]);
+    let positions: Vec<_> = near
+        .positions
+        .iter()
+        .map(|x| vector![1000.0 + (x[0] - from) / size])
+        .collect();
+    let volumes: Vec<_> = near.volumes.iter().map(|v| v / size).collect();
+    let mut taylor = Taylor::<f64, 1, 3>::new();
+    assert_eq!(
+        check_reconstruction(&mut taylor, &grid, &positions, &volumes, &TAYLOR),
+        Ok(())
+    );
+}
+
+/// What the fast ways of a reconstruction can get wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Door {
+    Right,
+    /// Cells streamed alone leave out their last one.
+    Cells,
+    /// The same of amounts.
+    Amounts,
+    /// Four at once have the other sign.
+    Four,
+    /// Four at once put the second cell's values into the first.
+    Lane,
+    /// Only the cells that four at once give up are wrong.
+    Hard,
+    /// Every cell is given up.
+    AllHard,
+}
+
+/// Taylor least squares through wrong doors.
+#[derive(Clone, Debug)]
+struct Doors(Taylor<f64, 1, 3>, Door);
+
+impl Reconstruction<f64, 1> for Doors {
+    const FIELDS_AT_PARTICLES: bool = false;
+    const AMOUNTS_AT_PARTICLES: bool = false;
+    const BY_CELLS: bool = true;
+    const BY_FOUR: bool = true;
+
+    fn prepare(&mut self, cloud: &Cloud<'_, f64, 1>) {
+        self.0.prepare(cloud);
+    }
+
+    fn integrate<Q: Field<f64>>(
+        &mut self,
+        cloud: &Cloud<'_, f64, 1>,
+        value: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<f64, 1>, Q),
+    ) {
+        self.0.integrate(cloud, value, sink);
+    }
+
+    fn integrate_conserved<Q: Field<f64>>(
+        &mut self,
+        cloud: &Cloud<'_, f64, 1>,
+        amount: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<f64, 1>, Q),
+    ) {
+        self.0.integrate_conserved(cloud, amount, sink);
+    }
+
+    fn integrate_cells<Q: Field<f64>>(
+        &self,
+        cloud: &Cloud<'_, f64, 1>,
+        cells: Range<usize>,
+        value: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<f64, 1>, Q),
+    ) {
+        let end = cells.end - usize::from(self.1 == Door::Cells);
+        self.0.integrate_cells(cloud, cells.start..end, value, sink);
+    }
+
+    fn integrate_conserved_cells<Q: Field<f64>>(
+        &self,
+        cloud: &Cloud<'_, f64, 1>,
+        cells: Range<usize>,
+        amount: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<f64, 1>, Q),
+    ) {
+        let end = cells.end - usize::from(self.1 == Door::Amounts);
+        self.0
+            .integrate_conserved_cells(cloud, cells.start..end, amount, sink);
+    }
+
+    fn line(&self) -> impl Iterator<Item = f64> {
+        self.0.line()
+    }
+
+    fn integrate_four<V: Lanes<f64>, Q: Field<f64>>(
+        &self,
+        cloud: &Cloud<'_, f64, 1>,
+        cells: Range<usize>,
+        conserve: bool,
+        value: &impl Values<f64, Q>,
+        mut sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+    ) -> Four {
+        let mut four = self
+            .0
+            .integrate_four::<V, Q>(cloud, cells, conserve, value, |number, values| {
+                let mut values = *values;
+                let [a, b, c, d] = values[0].array();
+                match self.1 {
+                    Door::Four => values[0] = V::splat(0.0) - values[0],
+                    Door::Lane => values[0] = V::new([b, b, c, d]),
+                    _ => values[0] = V::new([a, b, c, d]),
+                }
+                sink(number, &values);
+            });
+        if matches!(self.1, Door::Hard | Door::AllHard) {
+            four.hard = [true; 4];
+        }
+        four
+    }
+
+    fn integrate_hard<Q: Field<f64>>(
+        &self,
+        cloud: &Cloud<'_, f64, 1>,
+        cell: usize,
+        conserve: bool,
+        value: &impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<f64, 1>, Q),
+    ) -> bool {
+        let factor = if self.1 == Door::Hard { 1.0 + 1e-9 } else { 1.0 };
+        self.0
+            .integrate_hard(cloud, cell, conserve, &|p| value(p).scaled(factor), sink)
+    }
+}
+
+#[test]
+fn ways_that_stream_something_else_are_found() {
+    let verdict = |door| {
+        check::<f64, 1, _>(Doors(Taylor::new(), door), 5, TAYLOR)
+            .err()
+            .map(|failure| failure.property)
+    };
+    assert_eq!(verdict(Door::Right), None);
+    assert_eq!(verdict(Door::AllHard), None);
+    assert_eq!(verdict(Door::Cells), Some(Property::CellsStreamTheSame));
+    assert_eq!(verdict(Door::Amounts), Some(Property::CellsStreamTheSame));
+    assert_eq!(verdict(Door::Four), Some(Property::FourStreamTheSame));
+    assert_eq!(verdict(Door::Lane), Some(Property::FourStreamTheSame));
+    assert_eq!(verdict(Door::Hard), Some(Property::FourStreamTheSame));
 }

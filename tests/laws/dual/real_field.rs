@@ -148,7 +148,8 @@ impl ComplexField for Dual {
     absent! {
         tan() -> Self, asin() -> Self, acos() -> Self, atan() -> Self,
         sinh() -> Self, cosh() -> Self, tanh() -> Self, asinh() -> Self, acosh() -> Self, atanh() -> Self,
-        exp2() -> Self, exp_m1() -> Self, ln_1p() -> Self, log2() -> Self, log10() -> Self, log(_base) -> Self,
+        exp2() -> Self, exp_m1() -> Self, ln_1p() -> Self,
+        log2() -> Self, log10() -> Self, log(_base) -> Self,
         powf(_n) -> Self, powc(_n) -> Self,
     }
 }
@@ -204,6 +205,7 @@ impl RealField for Dual {
     constants! {
         pi = PI; two_pi = TAU; frac_pi_2 = FRAC_PI_2; frac_pi_3 = FRAC_PI_3; frac_pi_4 = FRAC_PI_4;
         frac_pi_6 = FRAC_PI_6; frac_pi_8 = FRAC_PI_8; frac_1_pi = FRAC_1_PI; frac_2_pi = FRAC_2_PI;
-        frac_2_sqrt_pi = FRAC_2_SQRT_PI; e = E; log2_e = LOG2_E; log10_e = LOG10_E; ln_2 = LN_2; ln_10 = LN_10;
+        frac_2_sqrt_pi = FRAC_2_SQRT_PI; e = E; log2_e = LOG2_E; log10_e = LOG10_E;
+        ln_2 = LN_2; ln_10 = LN_10;
     }
 }

@@ -1,0 +1,85 @@
+//! The DOFs on the grid's faces, which walls hold.
+
+use nalgebra::SVector;
+
+use super::{FaceCondition, Forcing, Stepper};
+use crate::basis::BasisFamily;
+use crate::error::StepError;
+use crate::grid::{Cell, Face, Grid, Side};
+use crate::law::ConstitutiveLaw;
+use crate::phase::Phase;
+use crate::reconstruction::Reconstruction;
+use crate::scalar::Scalar;
+
+/// Of each face, in the order of [`Face::all`], the DOFs that a wall holds, and one that has a value there
+/// all the same.
+pub(super) fn face_dofs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    basis: &B,
+    grid: &Grid<T, D>,
+) -> (Vec<Vec<u32>>, Vec<Option<usize>>) {
+    Face::all::<D>()
+        .map(|face| {
+            let mut held = Vec::new();
+            basis.for_each_on_face(grid, face, |dof| held.push(dof as u32));
+            let left_out = left_out(basis, grid, face, &held);
+            (held, left_out)
+        })
+        .unzip()
+}
+
+/// A DOF that has a value in the middle of a cell's part of the face, and is not held there.
+fn left_out<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    basis: &B,
+    grid: &Grid<T, D>,
+    face: Face,
+    held: &[u32],
+) -> Option<usize> {
+    let (axis, window) = (face.axis, grid.window());
+    let mut cell: Cell<D> = window.first();
+    let end = match face.side {
+        Side::Min => 0,
+        Side::Max => grid.cells()[axis] as u32,
+    };
+    let reaches = match face.side {
+        Side::Min => cell[axis] == 0,
+        Side::Max => cell[axis] as usize + window.shape()[axis] == grid.cells()[axis],
+    };
+    if B::HOLDS_ABOUT || !reaches {
+        return None;
+    }
+    cell[axis] = end.saturating_sub(u32::from(face.side == Side::Max));
+    let mut x: SVector<T, D> = grid.centre(&cell);
+    x[axis] = grid.edge(axis, end as usize);
+    // Far more than the round-off of a coordinate, far less than a value that counts.
+    let least = T::default_epsilon().sqrt();
+    let mut found = None;
+    basis.for_each(grid, &cell, &x, |dof, phi, _| {
+        if phi.abs() > least && held.binary_search(&(dof as u32)).is_err() {
+            found = Some(dof);
+        }
+    });
+    found
+}
+
+impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: ConstitutiveLaw<T, D>,
+    P: Phase<T, D>,
+{
+    /// Refuses walls that the basis would let slip.
+    pub(super) fn walls_can_be_held(&self, forcing: &Forcing<T, D>) -> Result<(), StepError> {
+        for (face, left_out) in Face::all::<D>().zip(&self.left_out) {
+            let wall = match forcing.face(face) {
+                FaceCondition::Held { .. } | FaceCondition::Frictional { .. } => true,
+                FaceCondition::Free | FaceCondition::Traction(_) => false,
+            };
+            if let (true, &Some(dof)) = (wall, left_out) {
+                return Err(StepError::WallNotHeld { face, dof });
+            }
+        }
+        Ok(())
+    }
+}
