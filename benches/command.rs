@@ -60,10 +60,15 @@ impl Case {
              [time]\nstep = {step:e}\nend = {end:e}\n\
              [method]\nbasis = \"{basis}\"\nreconstruction = \"{reconstruction}\"\n\
              [material]\nstrain = \"large\"\ndensity = 1.0\n\
-             law.linear-elastic = {{ youngs_modulus = 0.9, poissons_ratio = 0.2 }}\n\
+             law.linear-elastic = {{ youngs_modulus = 0.9{poisson} }}\n\
              [[body]]\nmin = [{zeros}]\nmax = [{ones}]\n\
              particles_per_cell = [{per_cell}]\nvelocity = [{velocity}]\n\
              {walls}",
+            poisson = if self.axes > 1 {
+                ", poissons_ratio = 0.2"
+            } else {
+                ""
+            },
             zeros = each("0.0"),
             ones = each("1.0"),
             velocity = velocity.join(", "),
