@@ -1,11 +1,13 @@
 //! Surfaces that the liquid does not pass.
 //!
 //! Source: a sealed element under a load (OpenSees/OpenSees #1811); the storage equation alone.
-//! Goal: where no liquid can leave and the load comes slowly, solid and liquid strain alike: of a load `q` the liquid takes
-//! `p = q Q / (Q + M)`, `Q = K_w / n`, `M` the modulus of uniaxial strain, everywhere, whatever the permeability, the drag's
-//! treatment, the method, the cells and the particles across. The energy is then that of the strain, `q^2 / (2 (Q + M))` per volume.
-//! Parameters: a box between smooth walls, a layer that ends at the grid's end or below it, a slab with two surfaces in one cell; as
-//! scenes, with half the step that `check` calls stable.
+//! Goal: where no liquid can leave and the load comes slowly, solid and liquid strain alike: of a load `q`
+//! the liquid takes
+//! `p = q Q / (Q + M)`, `Q = K_w / n`, `M` the modulus of uniaxial strain, everywhere, whatever the
+//! permeability, the drag's treatment, the method, the cells and the particles across. The energy is then
+//! that of the strain, `q^2 / (2 (Q + M))` per volume.
+//! Parameters: a box between smooth walls, a layer that ends at the grid's end or below it, a slab with two
+//! surfaces in one cell; as scenes, with half the step that `check` calls stable.
 //! Expected: pressure within 1 % in every particle, energy within 1 %, left and right alike to round-off.
 
 use std::f64::consts::PI;
@@ -94,7 +96,8 @@ traction = ["-1e5*(min(t/0.1, 1) - sin(2*pi*min(t/0.1, 1))/(2*pi))"]
 const BASES: [&str; 3] = ["linear", "dual-domain", "bspline"];
 /// A layer that ends at the grid's end, and one at a cell's edge with room above.
 const ROOMS: [&str; 2] = ["title='none'", "grid={min=[0], max=[4.4], cells=[44]}"];
-/// One that ends inside a cell: there the particles are poor points of an integral, and published TLS gains energy by itself.
+/// One that ends inside a cell: there the particles are poor points of an integral, and published TLS gains
+/// energy by itself.
 const INSIDE: &str = "grid={min=[0], max=[4.4], cells=[42]}";
 
 fn scene(text: &str, set: &[String]) -> Scene {
@@ -168,7 +171,8 @@ fn a_sealed_box_is_undrained_for_any_permeability() {
     }
 }
 
-/// From one particle across, where one equation a particle was enough, to eight in one cell and in four; oblong cells too.
+/// From one particle across, where one equation a particle was enough, to eight in one cell and in four;
+/// oblong cells too.
 #[test]
 fn a_sealed_box_is_undrained_with_any_number_of_particles_across() {
     for basis in BASES {
@@ -187,8 +191,9 @@ fn a_sealed_box_is_undrained_with_any_number_of_particles_across() {
     }
 }
 
-/// The surface lies where a cell ends, deep in a cell, and barely in one. There the load itself is felt up to a fifth too weak or strong by
-/// single particles, since a cut cell's particles are poor points of its integral; the liquid takes its share of what is felt.
+/// The surface lies where a cell ends, deep in a cell, and barely in one. There the load itself is felt up to
+/// a fifth too weak or strong by single particles, since a cut cell's particles are poor points of its
+/// integral; the liquid takes its share of what is felt.
 #[test]
 fn a_sealed_box_is_undrained_wherever_its_surface_lies() {
     for basis in BASES {
@@ -206,13 +211,15 @@ fn a_sealed_box_is_undrained_wherever_its_surface_lies() {
     }
 }
 
-/// A roof that the box does not reach is no wall of its liquid: under its own weight the mean pressure stays the undrained one,
+/// A roof that the box does not reach is no wall of its liquid: under its own weight the mean pressure stays
+/// the undrained one,
 /// `Q / (Q + M)` of the mean total stress `rho g H / 2`, while the liquid settles to `p' = rho_w g` within.
 #[test]
 fn a_wall_out_of_reach_does_not_drain_a_surface() {
     let weight = [
         "grid={min=[0, 0], max=[1, 1.25], cells=[2, 10]}",
-        "boundary=[{face='x-min', roller=true}, {face='x-max', roller=true}, {face='y-min', roller=true}, {face='y-max', roller=true}]",
+        "boundary=[{face='x-min', roller=true}, {face='x-max', roller=true}, {face='y-min', roller=true},
+        {face='y-max', roller=true}]",
         "load.body_force=['0', '-9.81*sin(pi/2*min(t/0.3, 1))^2']",
         "material.permeability=1e-2",
     ]
@@ -227,8 +234,8 @@ fn a_wall_out_of_reach_does_not_drain_a_surface() {
     }
 }
 
-/// A layer that drains through its base alone, its surface at two heights in each cell: one equation a point would fix all slip in
-/// the uppermost cells, and their pressure would stay what it was.
+/// A layer that drains through its base alone, its surface at two heights in each cell: one equation a point
+/// would fix all slip in the uppermost cells, and their pressure would stay what it was.
 ///
 /// Expected: Terzaghi's series at the sealed end, between those of the two heights.
 #[test]
@@ -250,8 +257,8 @@ fn an_uneven_sealed_surface_lets_its_cells_drain_downwards() {
     }
 }
 
-/// Noise in the solid, no load, nearly the largest stable step, little drag: the energy falls. With Shepard: published TLS gains some in the
-/// plane, drained or not.
+/// Noise in the solid, no load, nearly the largest stable step, little drag: the energy falls. With Shepard:
+/// published TLS gains some in the plane, drained or not.
 #[test]
 fn no_energy_comes_through_a_sealed_surface() {
     let noise = "sin(1e4*sin(1e4*(x+2*y+1)))*1e-6";
@@ -272,11 +279,13 @@ fn no_energy_comes_through_a_sealed_surface() {
     }
 }
 
-/// A wall that the liquid passes, under a sealed top and under a drained one, with both treatments of the drag.
+/// A wall that the liquid passes, under a sealed top and under a drained one, with both treatments of the
+/// drag.
 ///
-/// Expected: Terzaghi's series of a layer that drains on one side, or on two: the mean pressure of a cell within 2 % of the
-/// initial one. With the drag felt at the step's end the liquid at the wall moved with the solid in the accelerations and not in
-/// the mapped velocities, and the energy ended at 4000 J/m instead of 0.4.
+/// Expected: Terzaghi's series of a layer that drains on one side, or on two: the mean pressure of a cell
+/// within 2 % of the initial one. With the drag felt at the step's end the liquid at the wall moved with the
+/// solid in the accelerations and not in the mapped velocities, and the energy ended at 4000 J/m instead of
+/// 0.4.
 #[test]
 fn a_wall_that_the_liquid_passes_drains_a_layer() {
     for basis in BASES {
@@ -336,7 +345,8 @@ fn diffusivity(permeability: f64) -> f64 {
     permeability / (1e3 * 9.81) / (1.0 / M + 1.0 / Q)
 }
 
-/// Pressure over the initial one at the share `z` of the way from the drained to the sealed end, after the scaled `time`.
+/// Pressure over the initial one at the share `z` of the way from the drained to the sealed end, after the
+/// scaled `time`.
 fn terzaghi(z: f64, time: f64) -> f64 {
     let waves = (0..2000).map(|m| f64::from(2 * m + 1) * PI / 2.0);
     waves
@@ -351,8 +361,8 @@ fn check_layer(set: &[String]) {
     check(&outcome, set, -1e5 * q / (q + m), 4.0 * 1e10 / (2.0 * (q + m)));
 }
 
-/// Linear functions and B-splines with Shepard ended at 1e6 J/m2 or off the grid, with k from 1e-3 m/s on, while the constraint was one on the
-/// accelerations alone.
+/// Linear functions and B-splines with Shepard ended at 1e6 J/m2 or off the grid, with k from 1e-3 m/s on,
+/// while the constraint was one on the accelerations alone.
 #[test]
 fn a_sealed_layer_is_undrained_for_any_permeability() {
     for basis in BASES {
