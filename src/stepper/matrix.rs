@@ -122,7 +122,8 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
         }
     }
 
-    /// Replaces `right`, which must be zero at held DOFs, by the solution with the factors of the last velocities; of one dimension.
+    /// Replaces `right`, which must be zero at held DOFs, by the solution with the factors of the last
+    /// velocities; of one dimension.
     pub(super) fn solve_again(&self, right: &mut [SVector<T, D>]) {
         for axis in 0..D {
             self.factor.solve_again(right, axis);

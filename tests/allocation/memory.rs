@@ -87,8 +87,8 @@ fn a_two_phase_stepper_takes_what_it_says() {
     }
 }
 
-/// The pressure on a sealed surface, here that of a box of 40 by 40 cells on all sides but its base, is solved for in room that was
-/// there from the start.
+/// The pressure on a sealed surface, here that of a box of 40 by 40 cells on all sides but its base, is
+/// solved for in room that was there from the start.
 #[test]
 fn sealed_surfaces_in_the_plane_take_what_is_said() {
     let room = [

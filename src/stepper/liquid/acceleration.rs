@@ -69,8 +69,8 @@ where
         });
     }
 
-    /// Share of a change of the solid's velocity that the drag passes on to the liquid within a step, given the liquid's mass and the
-    /// drag of a DOF: none where the drag is felt at the step's start.
+    /// Share of a change of the solid's velocity that the drag passes on to the liquid within a step, given
+    /// the liquid's mass and the drag of a DOF: none where the drag is felt at the step's start.
     pub(super) fn share_of_drag(&self, dt: T) -> impl Fn(T, T) -> T + use<T, D, B, R, L, P> {
         let n = self.phase.porosity();
         let dt = match self.phase.drag_treatment() {

@@ -171,8 +171,8 @@ where
     }
 }
 
-/// Velocities of solid and liquid that the impulses of `components` on the liquid, and their opposites on the solid, make with the
-/// matrices of their masses.
+/// Velocities of solid and liquid that the impulses of `components` on the liquid, and their opposites on the
+/// solid, make with the matrices of their masses.
 fn answer_to<T: Scalar, const D: usize>(
     components: &Components<T>,
     matrices: [&MassMatrix<T, D>; 2],

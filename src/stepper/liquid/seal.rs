@@ -2,20 +2,24 @@
 //!
 #![doc = include_str!("../../../docs/formulas.html")]
 //!
-//! The pressure on a sealed surface is the multiplier of $\int\psi_a\,(v_w - v_s)\cdot n\,dA = 0$, with the surface's particles as
-//! points of the integral and $\psi_a$ the traces of the basis: the products of its functions along the other axes, one for
-//! each place of a DOF beside the face's axis and each layer of cells that the surface passes. That is one equation for each
-//! value that the slip can have on a flat surface, however many particles end there: one equation a particle would fix the slip
-//! at several depths of one cell, and with it the flow through that cell.
+//! The pressure on a sealed surface is the multiplier of $\int\psi_a\,(v_w - v_s)\cdot n\,dA = 0$, with the
+//! surface's particles as points of the integral and $\psi_a$ the traces of the basis: the products of its
+//! functions along the other axes, one for each place of a DOF beside the face's axis and each layer of cells
+//! that the surface passes. That is one equation for each value that the slip can have on a flat surface,
+//! however many particles end there: one equation a particle would fix the slip at several depths of one
+//! cell, and with it the flow through that cell.
 //!
-//! With $C$ these equations, $N$ the slip that a unit force on the liquid and its opposite on the solid make at each DOF, the
-//! forces $C^T\lambda$ follow from $C N C^T\lambda = -C(v_w - v_s)$, symmetric and positive semidefinite (a trace that few particles meet
-//! may follow from others): conjugate gradients, preconditioned by the row sums, which are positive since all entries are.
+//! With $C$ these equations, $N$ the slip that a unit force on the liquid and its opposite on the solid make
+//! at each DOF, the forces $C^T\lambda$ follow from $C N C^T\lambda = -C(v_w - v_s)$, symmetric and positive
+//! semidefinite (a trace that few particles meet may follow from others): conjugate gradients, preconditioned
+//! by the row sums, which are positive since all entries are.
 //!
-//! The same constraints hold for the accelerations and for every velocity mapped from the particles, as at a held face. Kick and
-//! drift are then adjoint, $v = \Pi M^{-1}\Phi^T m_p v_p$ and $\dot v_p = \Phi\Pi M^{-1} f$ with one projection $\Pi$, and the wall
-//! of the liquid does no work. A constraint on the accelerations alone leaves a slip in the mapped velocity; what it then does to
-//! the pressure answers other forces than those that it came from, and the waves along the surface grow.
+//! The same constraints hold for the accelerations and for every velocity mapped from the particles, as at a
+//! held face. Kick and drift are then adjoint, $v = \Pi M^{-1}\Phi^T m_p v_p$ and $\dot v_p = \Phi\Pi M^{-1}f$
+//! with one projection $\Pi$, orthogonal in the masses and, where the drag is felt at the step's end, in
+//! that of the drag times the step; the surface does no work on the slip. A constraint on the accelerations
+//! alone leaves a slip in the mapped velocity; what it then does to the pressure answers other forces than
+//! those that it came from, and the waves along the surface grow.
 
 use crate::grid::{Face, Side};
 use crate::scalar::Scalar;
@@ -238,7 +242,8 @@ impl<T: Scalar> Gradients<T> {
         }
     }
 
-    /// Goes along the direction, whose image is at hand, as far as `size` says; `false` where nothing is left to go.
+    /// Goes along the direction, whose image is at hand, as far as `size` says; `false` where nothing is left
+    /// to go.
     fn advance(&mut self, size: T) -> bool {
         let along = self.direction.iter().zip(&self.image);
         let curvature = along.fold(T::zero(), |sum, (&d, &i)| sum + d * i);
@@ -265,7 +270,8 @@ pub(in super::super) struct Seal<T> {
 }
 
 impl<T: Scalar> Seal<T> {
-    /// For so many points, at each of which so many functions have a value, the products of so many along the axes beside any.
+    /// For so many points, at each of which so many functions have a value, the products of so many along the
+    /// axes beside any.
     pub(in super::super) fn new(points: usize, functions: usize, traces: usize) -> Self {
         let (functions, traces) = (points * functions, points * traces);
         let vector = || Vec::with_capacity(traces);
@@ -315,8 +321,8 @@ impl<T: Scalar> Seal<T> {
         self.points.traces.clear();
     }
 
-    /// Adds a point at `place` that stands for `area` of the surface; `visit` calls what it is given for each DOF with its value
-    /// there.
+    /// Adds a point at `place` that stands for `area` of the surface; `visit` calls what it is given for each
+    /// DOF with its value there.
     pub(super) fn add_point<const D: usize>(
         &mut self,
         place: &Place<D>,
@@ -367,8 +373,8 @@ impl<T: Scalar> Seal<T> {
         self.gradients.clear();
     }
 
-    /// Makes `components.force` what brings the slip in `components.slip` to zero at the surfaces, where every component answers
-    /// by itself. The slip is used up.
+    /// Makes `components.force` what brings the slip in `components.slip` to zero at the surfaces, where
+    /// every component answers by itself. The slip is used up.
     pub(super) fn solve(&mut self) {
         self.solve_with(|components| {
             let answers = components.answers.iter().zip(&components.force);
@@ -461,7 +467,8 @@ mod tests {
         seal
     }
 
-    /// Slip left at the points, and what is left of the equations, after the solution; checks that its forces take energy.
+    /// Slip left at the points, and what is left of the equations, after the solution; checks that its forces
+    /// take energy.
     fn solved(mut seal: Seal<f64>) -> (Vec<f64>, Vec<f64>) {
         let before = seal.components.slip.clone();
         seal.solve();

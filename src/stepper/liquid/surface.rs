@@ -42,8 +42,8 @@ fn is_held<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePo
     matches!(forcing.face(point.face), FaceCondition::Held { .. })
 }
 
-/// Whether the liquid does not pass a surface. A wall at the face makes no difference: where the surface does not lie on it nothing
-/// else stops the liquid, and where it does the slip is zero already.
+/// Whether the liquid does not pass a surface. A wall at the face makes no difference: where the surface does
+/// not lie on it nothing else stops the liquid, and where it does the slip is zero already.
 fn is_sealed<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> bool {
     forcing.pores(point.face) == PoreCondition::Sealed
 }
@@ -158,8 +158,8 @@ where
         }
     }
 
-    /// Takes from the accelerations what would let liquid pass a sealed surface. The pressure there acts on the liquid alone, that
-    /// is, its opposite on the solid; the drag that is felt at the step's end resists.
+    /// Takes from the accelerations what would let liquid pass a sealed surface. The pressure there acts on
+    /// the liquid alone, that is, its opposite on the solid; the drag that is felt at the step's end resists.
     pub(super) fn seal_accelerations(&mut self, dt: T) {
         let resistance = self.resistance(dt);
         let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
@@ -186,8 +186,8 @@ where
     }
 }
 
-/// Takes from the `motion` of both phases the slip through the sealed surfaces, where every DOF answers by itself: with its
-/// lumped masses and the given multiple of its drag.
+/// Takes from the `motion` of both phases the slip through the sealed surfaces, where every DOF answers by
+/// itself: with its lumped masses and the given multiple of its drag.
 fn seal<T: Scalar, const D: usize>(
     seal: &mut Seal<T>,
     [solid_mass, liquid_mass]: [&[T]; 2],
@@ -210,7 +210,8 @@ fn seal<T: Scalar, const D: usize>(
     }
 }
 
-/// Accelerations of both phases at a DOF for a unit force on the liquid and its opposite on the solid, which the `drag` opposes.
+/// Accelerations of both phases at a DOF for a unit force on the liquid and its opposite on the solid, which
+/// the `drag` opposes.
 fn answer<T: Scalar>([m_s, m_w]: [T; 2], drag: T, [solid_held, liquid_held]: [bool; 2]) -> Answer<T> {
     if liquid_held || !(m_s > T::zero() && m_w > T::zero()) {
         return Answer::none();

@@ -230,9 +230,9 @@ where
         }
     }
 
-    /// Told velocities at held DOFs. Where the liquid passes, the drag that the solid's change makes in a step moves it along, as it does
-    /// with the accelerations: held otherwise in one than in the other, kick and drift are not adjoint, and where the drag is strong the
-    /// energy grows at any step near the wave's.
+    /// Told velocities at held DOFs. Where the liquid passes, the drag that the solid's change makes in a
+    /// step moves it along, as it does with the accelerations: held otherwise in one than in the other, kick
+    /// and drift are not adjoint, and where the drag is strong the energy grows at any step near the wave's.
     fn hold_velocities(&mut self, dt: T, forcing: &Forcing<T, D>) {
         let share = self.share_of_drag(dt);
         let (solid, liquid) = (&mut self.dofs.velocity, &mut self.liquid.velocity);
