@@ -95,6 +95,19 @@ impl Schedule {
         }
     }
 
+    /// Whether `scene` may have come to these steps when `done` of them were taken.
+    pub(super) fn makes_sense(&self, scene: &Scene, done: usize) -> bool {
+        let (first, start) = self.since;
+        let of_scene = match scene.time.step {
+            StepSize::Fixed(dt) => self.dt.to_bits() == dt.to_bits() && first == 0 && start == 0.0,
+            StepSize::Auto { .. } => self.dt > 0.0 && self.end == scene.time.end,
+        };
+        let inside = self.end.is_finite() && 0.0 <= start && start < self.end && first <= done;
+        // Neither count is out of range once both tests are passed.
+        let count = steps_to(self.end - start, self.dt);
+        of_scene && inside && count <= MOST_STEPS && first.checked_add(count as usize) == Some(self.steps)
+    }
+
     /// The same run with another end (s).
     pub(super) fn with_end(self, end: f64) -> Self {
         let (first, start) = self.since;
