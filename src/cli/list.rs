@@ -4,8 +4,11 @@ use materialpoint::method::Method;
 use materialpoint::scene::Scene;
 use serde_json::{Map, Value, json};
 
-/// Key in JSON, heading for people, and what there is, by name.
-const NAMES: [(&str, &str, &[(&str, &str)]); 5] = [
+/// Names with what they stand for.
+type Names = &'static [(&'static str, &'static str)];
+
+/// Key in JSON, heading for people, and what there is.
+const NAMES: [(&str, &str, Names); 5] = [
     (
         "bases",
         "basis families (method.basis)",

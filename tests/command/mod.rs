@@ -240,8 +240,8 @@ fn check_counts_the_steps_and_refuses_an_unstable_one() {
     }
 }
 
-/// Two free particles that part at 0.9 of the wave's speed: a step of the size of a cell's crossing gives energy out of nothing. The
-/// files are there, and the command says that they are no result.
+/// A step in which a wave crosses nearly a cell, where particles cross edges: energy out of nothing. The files are there, and the
+/// command says that they are no result.
 #[test]
 fn a_run_that_made_energy_writes_its_files_and_ends_with_status_three() {
     let arguments = [

@@ -82,6 +82,12 @@ impl Checkpoint {
         }
         let past = take_schedule(&mut content).map_err(read)?;
         let milestone = take_milestone(&mut content).map_err(read)?;
+        if !past.makes_sense(scene, milestone.done) {
+            return Err(CheckpointError::Damaged {
+                path: path.into(),
+                problem: "its steps make no sense",
+            });
+        }
         // Automatic steps go on as they were; the end is that of then.
         let schedule = match scene.time.step {
             StepSize::Fixed(_) => past.with_end(scene.time.end),

@@ -150,6 +150,12 @@ fn a_run_that_renews_its_step_is_resumed() {
         [[boundary]]
         face = "x-max"
         roller = true
+        [[boundary]]
+        face = "y-min"
+        roller = true
+        [[boundary]]
+        face = "y-max"
+        roller = true
     "#;
     for every in [7, 16, 64] {
         let scene = scene(text, &[&format!("output.checkpoint_every={every}")]);
