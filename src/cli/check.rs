@@ -1,6 +1,8 @@
 //! `materialpoint check`.
 
-use materialpoint::run::{MethodSummary, critical_step, mechanism, simulation, simulation_in};
+use materialpoint::run::{
+    MethodSummary, critical_step, mechanism, method_warnings, simulation, simulation_in,
+};
 use materialpoint::scene::StepSize;
 use materialpoint::stepper::{Mechanism, Simulation};
 use serde_json::json;
@@ -8,7 +10,7 @@ use serde_json::json;
 use super::Shared;
 use super::failure::Failure;
 use super::print::{print, print_json};
-use super::run::load;
+use super::run::{load, warn};
 
 /// What a particle carries.
 const ONE_PHASE: [&str; 7] = [
@@ -62,6 +64,7 @@ pub(super) fn check_scene(name: &str, shared: &Shared) -> Result<(), Failure> {
     };
     let critical = limit.map(|limit| limit.step);
     let method = MethodSummary::of(&scene);
+    warn(&method_warnings(&scene));
     let mechanism = mechanism(&scene, limit.map_or(Mechanism::Wave, |limit| limit.mechanism));
     let phases = scene.material.phases.count();
     let unknowns = scene.dimension() * phases;

@@ -25,6 +25,7 @@ pub use checkpoint::CheckpointError;
 pub use error::RunError;
 pub use fields::FieldValues;
 pub use limits::mechanism;
+pub use method_warnings::method_warnings;
 pub use norms::{ErrorNorms, Exact};
 pub use space::InSpace;
 pub use summary::{ConservationSummary, EnergySummary, MethodSummary, Summary};
