@@ -3,8 +3,8 @@
 use crate::grid::{Face, Side};
 use crate::scene::{Basis, Body, Phases, ReconstructionKind, Scene};
 
-/// What a user should know of the method of a scene.
-pub(super) fn method_warnings(scene: &Scene) -> Vec<String> {
+/// What a user should know of the method of a scene: sentences that name the keys at fault; none where it can be relied on.
+pub fn method_warnings(scene: &Scene) -> Vec<String> {
     let all = [
         spline_on_a_moving_surface(scene),
         published_fits_on_a_free_side(scene),
@@ -118,4 +118,96 @@ fn sub_points_of_another_shape(scene: &Scene) -> Option<String> {
          the shape of a cell: they overlap along one axis and leave gaps along another; take equal numbers",
         body.particles_per_cell
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COLUMN: &str = r#"
+        title = "Column"
+        [grid]
+        min = [0, 0]
+        max = [1, 6]
+        cells = [2, 12]
+        [time]
+        step = 1e-4
+        end = 1
+        [method]
+        basis = "linear"
+        reconstruction = "taylor"
+        [material]
+        strain = "small"
+        law.linear-elastic = { youngs_modulus = 1e7, poissons_ratio = 0.3 }
+        density = 1800
+        [[body]]
+        min = [0, 0]
+        max = [1, 5]
+        particles_per_cell = [2, 2]
+        [[boundary]]
+        face = "x-min"
+        roller = true
+        [[boundary]]
+        face = "x-max"
+        roller = true
+        [[boundary]]
+        face = "y-min"
+        fixed = true
+    "#;
+
+    fn warned(set: &[&str]) -> Vec<String> {
+        let set: Vec<_> = set.iter().map(ToString::to_string).collect();
+        method_warnings(&Scene::from_toml(COLUMN, &set).unwrap())
+    }
+
+    #[test]
+    fn published_fits_are_warned_of_a_free_side_and_of_no_other() {
+        let found = warned(&[]);
+        assert!(
+            matches!(&found[..], [one] if one.contains("method.reconstruction") && one.contains("body 0") && one.contains("y-max")),
+            "{found:?}"
+        );
+        for set in [
+            "method.reconstruction='shepard'",
+            "method.reconstruction='relaxed-taylor'",
+        ] {
+            assert_eq!(warned(&[set]), [""; 0]);
+        }
+        let roof = "boundary=[{face='x-min', roller=true}, {face='x-max', roller=true}, {face='y-min', fixed=true}, \
+                    {face='y-max', roller=true}]";
+        assert_eq!(warned(&[roof, "grid.max=[1, 5]"]), [""; 0]);
+        // Half of the column upon the other half.
+        let halves = "body=[{min=[0, 0], max=[1, 3], particles_per_cell=[2, 2]}, {min=[0, 3], max=[1, 5], particles_per_cell=[2, 2]}]";
+        assert_eq!(warned(&[roof, "grid.max=[1, 5]", halves]), [""; 0]);
+        assert!(warned(&[halves])[0].contains("body 1"));
+        assert_eq!(
+            warned(&[roof, "grid.max=[1, 5]", "body.0.inside='y - x'"]).len(),
+            1
+        );
+    }
+
+    #[test]
+    fn relaxed_fits_are_warned_of_less_than_two_particles_along_an_axis() {
+        let relaxed = "method.reconstruction='relaxed-taylor'";
+        for few in ["[1, 1]", "[1, 4]", "[4, 1]"] {
+            let found = warned(&[relaxed, &format!("body.0.particles_per_cell={few}")]);
+            assert!(
+                matches!(&found[..], [one] if one.contains("particles_per_cell") && one.contains(few)),
+                "{found:?}"
+            );
+        }
+        assert_eq!(warned(&[relaxed, "body.0.particles_per_cell=[2, 4]"]), [""; 0]);
+    }
+
+    #[test]
+    fn sub_points_are_warned_of_layouts_of_another_shape_than_cells() {
+        let set = [
+            "method.basis='dual-domain'",
+            "method.reconstruction='shepard'",
+            "method.subpoints=2",
+        ];
+        assert_eq!(warned(&set), [""; 0]);
+        let unlike = ["body.0.particles_per_cell=[2, 4]"];
+        assert!(warned(&[&set[..], &unlike].concat())[0].contains("method.subpoints"));
+    }
 }

@@ -93,7 +93,7 @@ where
     /// Particles in their initial state.
     pub particles: Particles<T, D, L::State, P::Particle>,
     /// Particles at the surfaces that carry tractions or, with a liquid in the pores, pressures: there, every surface of
-    /// a body that is not held.
+    /// a body that is not held. So too along one axis with any reconstruction but those by particle sums: fits end there.
     pub surface: Vec<SurfacePoint<T>>,
 }
 

@@ -9,8 +9,10 @@ use crate::scalar::Scalar;
 
 /// Points of a cell along an axis: functions that bend nearer to an edge than half their distance are not found out.
 const POINTS: usize = 32;
-/// Part of one, in units of the rounding of one, that a difference of values may be off.
+/// What a difference of values may be off, in units of the rounding of one.
 const ROUNDING: f64 = 1e4;
+/// The same in units of the rounding of a coordinate, in cells.
+const OF_COORDINATES: f64 = 64.0;
 
 /// Refuses a basis that is not one polynomial of its degree along each axis of each cell: ties between cells continue that
 /// polynomial ([`crate::mass::Penalty`]), and continue something else where functions bend within a cell.
@@ -53,7 +55,8 @@ fn bends_in<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
             functions[place].1[k] += value;
         });
     }
-    let largest = T::default_epsilon() * T::lit(ROUNDING);
+    let farthest = grid.min()[axis].abs().max(grid.max()[axis].abs()) * grid.inverse_cell_size()[axis];
+    let largest = T::default_epsilon() * (T::lit(ROUNDING) + farthest * T::lit(OF_COORDINATES));
     functions.into_iter().any(|(_, mut values)| {
         for _ in 0..=basis.degree() {
             values = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -61,4 +64,72 @@ fn bends_in<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
         // What is not a number is no polynomial either.
         !values.iter().all(|difference| difference.abs() <= largest)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::basis::{AxisFamily, BSpline, DualDomain, Linear, Row};
+    use nalgebra::vector;
+
+    /// Linear functions averaged over a particle of this half size, in cells (uGIMP): they bend so far from the edges of cells, and
+    /// with a half are quadratic B-splines.
+    #[derive(Clone, Copy, Debug)]
+    struct Averaged(f64);
+
+    impl<T: Scalar> AxisFamily<T, 4> for Averaged {
+        fn dofs_on_axis(&self, cells: usize) -> usize {
+            cells + 3
+        }
+
+        fn row(&self, _cells: usize, cell: usize, s: T) -> Row<T, 4> {
+            let [half, one, two, four] = [self.0, 1.0, 2.0, 4.0].map(T::lit);
+            let value = |node: usize| {
+                let away = (s + one - T::count(node)).abs();
+                match away {
+                    _ if away < half => one - (away * away + half * half) / (two * half),
+                    _ if away < one - half => one - away,
+                    _ if away < one + half => (one + half - away) * (one + half - away) / (four * half),
+                    _ => T::zero(),
+                }
+            };
+            Row {
+                dof: std::array::from_fn(|k| cell + k),
+                value: std::array::from_fn(value),
+                slope: [T::zero(); 4],
+            }
+        }
+    }
+
+    crate::tensor_product_family!(Averaged, width = 4, degree = 2);
+
+    #[test]
+    fn functions_that_bend_within_a_cell_are_found_out() {
+        let grid = Grid::<f64, 2>::new(vector![0.0, 0.0], vector![5.0, 1.0], [5, 4]).unwrap();
+        let refused = SetupError::NotPolynomial {
+            axis: 0,
+            cell: 0,
+            degree: 2,
+        };
+        for half in [0.02, 0.125, 0.2, 0.4, 0.49] {
+            let found = refuse_bends_within_cells(&Averaged(half), &grid);
+            assert_eq!(found, Err(refused.clone()), "{half}");
+        }
+        assert_eq!(refuse_bends_within_cells(&Averaged(0.5), &grid), Ok(()));
+    }
+
+    #[test]
+    fn those_of_the_library_do_not_bend() {
+        fn check<B: BasisFamily<f64, 2>>(basis: &B) {
+            for (cells, far) in [([1, 1], 0.0), ([2, 7], 0.0), ([5, 4], 1e3)] {
+                let grid = Grid::new(vector![far, 0.0], vector![far + 1.0, 8.0], cells).unwrap();
+                assert_eq!(refuse_bends_within_cells(basis, &grid), Ok(()), "{cells:?}");
+            }
+        }
+        check(&Linear);
+        check(&DualDomain::default());
+        check(&BSpline::<1>);
+        check(&BSpline::<2>);
+        check(&BSpline::<3>);
+    }
 }

@@ -56,7 +56,7 @@ fn momentum(particles: &Particles<f64, 1>) -> f64 {
 #[test]
 fn bars_that_meet_gain_no_energy() {
     for name in BASES {
-        for per_cell in [2, 3, 4, 8] {
+        for per_cell in [1, 2, 3, 4, 8] {
             let bodies = [0, 1].map(|body| format!("body.{body}.particles_per_cell=[{per_cell}]"));
             let outcome = run(
                 &scene(BARS, &[&[basis(name)], &bodies[..]].concat()),
@@ -169,14 +169,14 @@ fn a_block_of_one_particle_a_cell_gains_neither_energy_nor_momentum() {
             basis(name),
             "grid.max=[20, 20]".to_owned(),
             "grid.cells=[20, 20]".to_owned(),
-            "time.step=\"auto\"".to_owned(),
+            "time.step=5e-4".to_owned(),
             "time.end=2".to_owned(),
             "body=[{min=[7, 7], max=[13, 13], particles_per_cell=[1, 1], velocity=[\"0.3+0.5*(x-10)\", \"-0.2-0.3*(y-10)\"]}]"
                 .to_owned(),
         ];
         let outcome = run_in::<2>(&scene(LONE, &set), None, &mut |_| {}).unwrap();
         let Summary { energy, warnings, .. } = &outcome.summary;
-        assert!(energy.highest_ratio.unwrap() < 1.03, "{name}: {energy:?}");
+        assert!(energy.highest_ratio.unwrap() < 1.01, "{name}: {energy:?}");
         assert!(
             warnings
                 .iter()

@@ -43,6 +43,11 @@ impl RelaxedCell {
         }
     }
 
+    /// Leaves it to its particles.
+    pub(super) fn leave_alone(&mut self) {
+        (self.kind, self.filling) = (Kind::Open, Filling::Alone);
+    }
+
     /// The cell with number `cell`, whose own fit is full or in doubt, and which has no neighbours on its `open` sides.
     #[inline(always)]
     pub(super) fn new<T: Scalar, const D: usize, const NB: usize>(

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::cells::{Kind, RelaxedCell};
+use super::cells::RelaxedCell;
 use super::determined::seen_by_particles;
 use super::four::{FourFits, KeptProducts, keep_gram};
 use super::{GROUPS, RelaxedTaylor};
@@ -59,6 +59,9 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
 
     /// Leaves those cells to their particles that neither these nor the cells near them determine.
     pub(super) fn leave_undetermined(&mut self, cloud: &Cloud<'_, T, D>) {
+        if D == 1 {
+            self.leave_short_runs(cloud);
+        }
         for place in 0..self.cells.len() {
             let is_alone = match self.cells[place].filling {
                 Filling::Few => !self.is_held(cloud, place),
@@ -66,8 +69,21 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                 Filling::Full | Filling::Alone => false,
             };
             if is_alone {
-                let cell = &mut self.cells[place];
-                (cell.kind, cell.filling) = (Kind::Open, Filling::Alone);
+                self.cells[place].leave_alone();
+            }
+        }
+    }
+
+    /// The same along one axis with all cells that follow each other without a gap and hold less particles than functions: as many as
+    /// cells, and the degree of the basis more.
+    fn leave_short_runs(&mut self, cloud: &Cloud<'_, T, D>) {
+        let mut first = 0;
+        for run in cloud.bins.occupied().chunk_by(|a, b| a + 1 == *b) {
+            let cells = first..first + run.len();
+            first = cells.end;
+            let particles: usize = run.iter().map(|&cell| cloud.bins.count_in(cell as usize)).sum();
+            if particles < run.len() + self.degree {
+                self.cells[cells].iter_mut().for_each(RelaxedCell::leave_alone);
             }
         }
     }

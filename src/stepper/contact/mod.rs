@@ -207,13 +207,13 @@ where
     #[inline(never)]
     fn lay_walls(&mut self, forcing: &Forcing<T, D>, by_sums: bool) {
         let reach = match by_sums {
-            true => self.basis.degree(),
+            true => self.basis.reach(),
             false => mapping::reach::<D>(),
         };
         let contact = &mut self.contact;
         let basis = (&self.basis, &self.grid);
         contact.dofs.lay(basis, &self.face_dofs, forcing, reach);
-        let seen = (self.basis.degree() + 1).pow(D as u32);
+        let seen = (self.basis.reach() + 1).pow(D as u32);
         contact.delassus.lay(&contact.dofs, seen);
         let (places, dofs) = (contact.dofs.dofs.len(), self.dofs.mass.len());
         contact.inverse = vec![SVector::zeros(); places];
@@ -250,7 +250,7 @@ where
         near.clear();
         for (p, (x, cell)) in particles.position.iter().zip(self.bins.cells()).enumerate() {
             // Functions of further cells have no value at the wall.
-            if !Wall::all(forcing).any(|wall| wall.cells_to(grid, cell) <= basis.degree()) {
+            if !Wall::all(forcing).any(|wall| wall.cells_to(grid, cell) <= basis.reach()) {
                 continue;
             }
             let root = particles.volume[p].powf(T::one() / T::count(D));
