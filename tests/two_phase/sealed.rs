@@ -191,6 +191,23 @@ fn a_sealed_box_is_undrained_with_any_number_of_particles_across() {
     }
 }
 
+#[test]
+fn a_sealed_box_in_space_is_undrained() {
+    let space = [
+        "grid={min=[0, 0, 0], max=[1, 1, 1], cells=[2, 3, 4]}".to_owned(),
+        "body=[{min=[0, 0, 0], max=[1, 1, 1], particles_per_cell=[2, 2, 2]}]".to_owned(),
+        "boundary=[{face='x-min', roller=true}, {face='x-max', roller=true}, {face='y-min', roller=true},
+        {face='y-max', roller=true}, {face='z-min', roller=true},
+        {face='z-max', traction=['0', '0', '-1e4*sin(pi/2*min(t/0.3, 1))^2']}]"
+            .to_owned(),
+    ];
+    for basis in BASES {
+        let set = [&space[..], &method(basis, "shepard")].concat();
+        let outcome = run_in::<3>(&scene(SEALED_BOX, &set), None, &mut |_| {}).unwrap();
+        check(&outcome, &set, -LOAD * Q / (Q + M), LOAD * LOAD / (2.0 * (Q + M)));
+    }
+}
+
 /// The surface lies where a cell ends, deep in a cell, and barely in one. There the load itself is felt up to
 /// a fifth too weak or strong by single particles, since a cut cell's particles are poor points of its
 /// integral; the liquid takes its share of what is felt.
@@ -237,22 +254,30 @@ fn a_wall_out_of_reach_does_not_drain_a_surface() {
 /// A layer that drains through its base alone, its surface at two heights in each cell: one equation a point
 /// would fix all slip in the uppermost cells, and their pressure would stay what it was.
 ///
-/// Expected: Terzaghi's series at the sealed end, between those of the two heights.
+/// Expected: in the mean of the two uppermost cells, between which the points of uneven cells leave noise,
+/// Terzaghi's series between those of the two heights, 0.556 to 0.596 of the initial pressure (0.7 if the
+/// uppermost cells keep theirs).
 #[test]
 fn an_uneven_sealed_surface_lets_its_cells_drain_downwards() {
     let (low, high, time) = (0.95, 1.0, 2.775);
     let inside = "inside='0.975 - y + 0.1*max(sin(40*pi*x), 0)',";
-    let at_end = |height: f64| terzaghi(1.0, diffusivity(1e-4) * time / (height * height));
     for basis in BASES {
         let set = [&layer(time, "", inside)[..], &method(basis, "shepard")].concat();
         let outcome = run_in::<2>(&scene(SEALED_BOX, &set), None, &mut |_| {}).unwrap();
         let places = outcome.particles.initial_position.iter().zip(&outcome.liquid);
-        let top: Vec<_> = places
-            .filter(|(x, _)| x[1] > 0.9)
-            .map(|(_, liquid)| liquid.pressure / -7878.787879)
-            .collect();
-        let mean = top.iter().sum::<f64>() / top.len() as f64;
-        let expected = at_end(low)..at_end(high);
+        let top: Vec<_> = places.filter(|(x, _)| x[1] > 0.8).collect();
+        let mean_of = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / top.len() as f64;
+        let mean = mean_of(&mut top.iter().map(|(_, liquid)| liquid.pressure / -7878.787879));
+        let expected = |height: f64| {
+            let scaled = diffusivity(1e-4) * time / (height * height);
+            mean_of(
+                &mut top
+                    .iter()
+                    .map(|(x, _)| terzaghi((x[1] / height).min(1.0), scaled)),
+            )
+        };
+        let expected = expected(low)..expected(high);
+        println!("{basis}: {mean} in {expected:?}");
         assert!(expected.contains(&mean), "{basis}: {mean} is not in {expected:?}");
     }
 }

@@ -15,11 +15,11 @@
 //! by the row sums, which are positive since all entries are.
 //!
 //! The same constraints hold for the accelerations and for every velocity mapped from the particles, as at a
-//! held face. Kick and drift are then adjoint, $v = \Pi M^{-1}\Phi^T m_p v_p$ and $\dot v_p = \Phi\Pi M^{-1}f$
-//! with one projection $\Pi$, orthogonal in the masses and, where the drag is felt at the step's end, in
-//! that of the drag times the step; the surface does no work on the slip. A constraint on the accelerations
-//! alone leaves a slip in the mapped velocity; what it then does to the pressure answers other forces than
-//! those that it came from, and the waves along the surface grow.
+//! held face. Kick and drift are then adjoint, $v = \Pi M^{-1}\Phi^T m_p v_p$ and $\dot v_p = \Phi\Pi
+//! M^{-1}f$ with one projection $\Pi$, orthogonal in the masses and, where the drag is felt at the step's
+//! end, in that of the drag times the step; the surface does no work on the slip. A constraint on the
+//! accelerations alone leaves a slip in the mapped velocity; what it then does to the pressure answers other
+//! forces than those that it came from, and the waves along the surface grow.
 
 use crate::grid::{Face, Side};
 use crate::scalar::Scalar;
