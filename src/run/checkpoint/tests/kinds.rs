@@ -132,7 +132,7 @@ fn a_run_that_renews_its_step_is_resumed() {
     let text = r#"
         title = "Tube"
         grid = { min = [0, 0], max = [1, 0.1], cells = [20, 2] }
-        time = { step = "auto", safety = 0.4, end = 0.12 }
+        time = { step = "auto", safety = 0.2, end = 0.12 }
         method = { basis = "linear", reconstruction = "shepard" }
         output = { particles = "none" }
         [material]
@@ -163,7 +163,7 @@ fn a_run_that_renews_its_step_is_resumed() {
     for every in [late | 1, late / 16 * 16, late / 64 * 64] {
         let scene = scene(text, &[&format!("output.checkpoint_every={every}")]);
         let (_scratch, path, whole) = with_checkpoint::<2>(&format!("resume-renewed-{every}"), &scene);
-        assert!(whole.summary.time_step_range.is_some() && every > 64);
+        assert!(whole.summary.time_step_range.is_some() && every >= 64);
         assert_same(&resume::<2>(&scene, &path).unwrap(), &whole, "renewed");
         // Neither the files nor the checkpoints of a run change its steps.
         assert_same(&alone, &whole, "alone");
