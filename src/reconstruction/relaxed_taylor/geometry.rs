@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::cells::{Kind, RelaxedCell};
+use super::cells::RelaxedCell;
 use super::determined::seen_by_particles;
 use super::four::{FourFits, KeptProducts, keep_gram};
 use super::{GROUPS, RelaxedTaylor};
