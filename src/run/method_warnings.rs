@@ -9,7 +9,6 @@ pub fn method_warnings(scene: &Scene) -> Vec<String> {
         spline_on_a_moving_surface(scene),
         published_fits_on_a_free_side(scene),
         few_particles(scene),
-        sub_points_of_another_shape(scene),
     ];
     all.into_iter().flatten().collect()
 }
@@ -106,20 +105,6 @@ fn few_particles(scene: &Scene) -> Option<String> {
     ))
 }
 
-/// Boxes of sub-points have the shape of a cell.
-fn sub_points_of_another_shape(scene: &Scene) -> Option<String> {
-    if scene.method.subpoints < 2 {
-        return None;
-    }
-    let unlike = |body: &Body| body.particles_per_cell.windows(2).any(|pair| pair[0] != pair[1]);
-    let (index, body) = first_body(scene, unlike)?;
-    Some(format!(
-        "body {index}: particles_per_cell = {:?} differs between axes, but the boxes that method.subpoints spread stress over have \
-         the shape of a cell: they overlap along one axis and leave gaps along another; take equal numbers",
-        body.particles_per_cell
-    ))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -197,17 +182,5 @@ mod tests {
             );
         }
         assert_eq!(warned(&[relaxed, "body.0.particles_per_cell=[2, 4]"]), [""; 0]);
-    }
-
-    #[test]
-    fn sub_points_are_warned_of_layouts_of_another_shape_than_cells() {
-        let set = [
-            "method.basis='dual-domain'",
-            "method.reconstruction='shepard'",
-            "method.subpoints=2",
-        ];
-        assert_eq!(warned(&set), [""; 0]);
-        let unlike = ["body.0.particles_per_cell=[2, 4]"];
-        assert!(warned(&[&set[..], &unlike].concat())[0].contains("method.subpoints"));
     }
 }

@@ -169,7 +169,7 @@ fn a_block_of_one_particle_a_cell_gains_neither_energy_nor_momentum() {
             basis(name),
             "grid.max=[20, 20]".to_owned(),
             "grid.cells=[20, 20]".to_owned(),
-            "time.step=5e-4".to_owned(),
+            "time.step=2.5e-4".to_owned(),
             "time.end=2".to_owned(),
             "body=[{min=[7, 7], max=[13, 13], particles_per_cell=[1, 1], velocity=[\"0.3+0.5*(x-10)\", \"-0.2-0.3*(y-10)\"]}]"
                 .to_owned(),
