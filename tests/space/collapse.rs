@@ -3,7 +3,8 @@
 //! Goal: how far columns of water and sand run, beside what was measured.
 //! Parameters: the compiled-in scenes `dam-break` and `granular-column`.
 //! Expected: the water behind which 99 % of it is within 8 % of the measured front; single particles run ahead of it by 10 to
-//! 20 %. The sand runs too far: 1.65 widths instead of 1.2, and is 0.85 of the column high where sand keeps its height.
+//! 20 %. The sand runs too far, 1.44 widths instead of 1.2 (1.65 with walls that gave energy), and is 0.84 of the column high where sand
+//! keeps its height.
 
 use materialpoint::particles::Particles;
 use materialpoint::run::run_in;
@@ -34,15 +35,15 @@ fn water_runs_as_far_as_martin_and_moyce_saw_it() {
         let bulk = behind(&particles, 0, 0.99) / WIDTH / front;
         assert!((0.92..1.08).contains(&bulk), "{time}: {bulk}");
         let foremost = behind(&particles, 0, 1.0) / WIDTH / front;
-        assert!((1.05..1.25).contains(&foremost), "{time}: {foremost}");
+        assert!((1.05..1.22).contains(&foremost), "{time}: {foremost}");
     }
 }
 
 #[test]
-fn sand_runs_too_far() {
+fn sand_runs_a_fifth_too_far() {
     let particles = at("granular-column", 0.6);
     let run_out = behind(&particles, 0, 0.99) / 0.1 - 1.0;
-    assert!((1.5..1.8).contains(&run_out), "{run_out}");
+    assert!((1.2..1.5).contains(&run_out), "{run_out}");
     let height = behind(&particles, 1, 1.0) / 0.1;
     assert!((0.8..0.9).contains(&height), "{height}");
 }
