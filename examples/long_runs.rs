@@ -255,7 +255,8 @@ fn reason(error: &StepError) -> String {
         StepError::Stress { .. } => "stress beyond E".into(),
         StepError::Invalid { name, value, .. } => format!("{name} {value:.1e}"),
         StepError::StepSize { .. } => "step".into(),
-        StepError::FrictionWithFlow { .. }
+        StepError::Friction { .. }
+        | StepError::FrictionWithFlow { .. }
         | StepError::PressureWithoutFlow { .. }
         | StepError::WallNotHeld { .. } => "wall".into(),
     }

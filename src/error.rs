@@ -182,6 +182,16 @@ pub enum StepError {
         /// A DOF that is left out.
         dof: usize,
     },
+    /// A wall that rubs with a coefficient or a velocity that makes no sense.
+    #[error(
+        "the face {face} is to rub with a coefficient of {coefficient}; it must be finite and not negative, and the wall's velocity finite"
+    )]
+    Friction {
+        /// The face.
+        face: Face,
+        /// Its coefficient.
+        coefficient: f64,
+    },
     /// A pressure outside the pores, where no liquid flows through them.
     #[error(
         "the face {face} has a pore pressure, but no liquid flows through the pores of this phase; leave it \

@@ -2,6 +2,7 @@
 
 use nalgebra::SMatrix;
 
+use super::start::start;
 use crate::law::ConstitutiveLaw;
 use crate::scalar::Scalar;
 
@@ -40,7 +41,7 @@ pub(super) fn bearable<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
         };
         return format!("the law bears {}{beside}", ranges.join(", or "));
     }
-    let starts = |factor: f64| law.start(&(stress * T::lit(factor)), off_plane).is_some();
+    let starts = |factor: f64| start(law, &(stress * T::lit(factor)), off_plane).is_some();
     if starts(1e-6) {
         "that is beyond its strength, whichever one of the normal stresses is changed".to_owned()
     } else if starts(-1e-6) {
@@ -62,7 +63,7 @@ impl<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> Search<'_, T, D, L> {
     fn is_borne(&self, value: T) -> bool {
         let mut stress = *self.stress;
         stress[(self.axis, self.axis)] = value;
-        self.law.start(&stress, self.off_plane).is_some()
+        start(self.law, &stress, self.off_plane).is_some()
     }
 
     /// The range around the mean of the other normal stresses, if that is borne: strength is least where they

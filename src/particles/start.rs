@@ -24,17 +24,25 @@ impl<T: Scalar, const D: usize, S: Copy, P> Particles<T, D, S, P> {
     ) -> Result<(), SetupError> {
         for (particle, (state, stress)) in self.state.iter_mut().zip(&self.stress).enumerate() {
             let off_plane = off_plane(particle, stress);
-            *state = law
-                .start(stress, off_plane)
-                .ok_or_else(|| SetupError::InitialStress {
-                    particle,
-                    position: self.position[particle].iter().map(|x| x.primal()).collect(),
-                    stress: components(stress),
-                    allowed: bearable(law, stress, off_plane),
-                })?;
+            *state = start(law, stress, off_plane).ok_or_else(|| SetupError::InitialStress {
+                particle,
+                position: self.position[particle].iter().map(|x| x.primal()).collect(),
+                stress: components(stress),
+                allowed: bearable(law, stress, off_plane),
+            })?;
         }
         Ok(())
     }
+}
+
+/// The state that belongs to a stress, if the law has one and a meaning for it.
+pub(super) fn start<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
+    law: &L,
+    stress: &SMatrix<T, D, D>,
+    off_plane: Option<T>,
+) -> Option<L::State> {
+    law.start(stress, off_plane)
+        .filter(|state| law.knows(stress, state))
 }
 
 /// The components with their names, for messages: `xx`, `xy`, `yy`.

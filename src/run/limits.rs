@@ -57,6 +57,16 @@ pub(super) fn warnings(scene: &Scene, schedule: &Schedule, gain: Option<EnergyGa
     found
 }
 
+/// Steps in which a wall's impulses were not found to the last digit.
+pub(super) fn unsolved_contacts(steps: usize) -> Option<String> {
+    (steps > 0).then(|| {
+        format!(
+            "in {steps} steps the impulses of walls that rub were not found within their tolerance; take more particles per cell, \
+             or method.reconstruction = \"shepard\""
+        )
+    })
+}
+
 /// A fixed step that was, or became, too large.
 fn step_warning(scene: &Scene, schedule: &Schedule) -> Option<String> {
     let (when, limit) = schedule.exceeded;

@@ -191,6 +191,8 @@ where
     summary.warnings = limits::warnings(scene, &schedule, summary.energy_gain(scene));
     summary.warnings.extend(warnings::warnings::<D>(scene)?);
     summary.warnings.extend(missing);
+    let unsolved = simulation.diagnostics().unsolved_contacts;
+    summary.warnings.extend(limits::unsolved_contacts(unsolved));
     summary.removed = removed;
     let law = simulation.material_fields();
     let (particles, liquid) = simulation.into_particles();
@@ -324,7 +326,7 @@ where
 {
     let mut simulation = scene.build(0.0)?;
     let proved = simulation.stiffness_is_bound();
-    let stiffness = simulation.stiffness(&forcing(scene, 0.0, 1.0)?);
+    let stiffness = simulation.stiffness(&forcing(scene, 0.0, scene.time.end)?);
     let limit = stiffness.and_then(|stiffness| simulation.largest_step(stiffness));
     Ok(limit.map(|limit| StableStep { limit, proved }))
 }
@@ -343,7 +345,9 @@ where
     Scene: InSpace<D>,
 {
     // Only which faces are held matters, not how they move.
-    Ok(scene.build(0.0)?.into_critical_step(&forcing(scene, 0.0, 1.0)?))
+    Ok(scene
+        .build(0.0)?
+        .into_critical_step(&forcing(scene, 0.0, scene.time.end)?))
 }
 
 /// A freshly built simulation of a scene of one dimension, to look at or to step by hand.

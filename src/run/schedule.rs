@@ -173,11 +173,12 @@ impl Schedule {
         };
         if step.is_multiple_of(every) {
             // Only which faces are held matters, not how they move.
-            let stiffness = simulation.stiffness(&forcing(scene, 0.0, 1.0)?);
+            let stiffness = simulation.stiffness(&forcing(scene, 0.0, scene.time.end)?);
             self.stiffness = stiffness.unwrap_or(0.0);
         }
         let limit = simulation.largest_step(self.stiffness);
-        self.limit = limit.unwrap_or(UNLIMITED);
+        // One that was found is kept for what is said of a run that stops.
+        self.limit = limit.unwrap_or(self.limit);
         Ok(limit)
     }
 

@@ -106,10 +106,16 @@ where
     /// A stepper of the particles about a corner.
     fn sample(&self) -> Option<Self> {
         let cells = self.bins.cells();
+        // By coordinates: a particle that has just strayed is in a cell without a number.
+        let last_axis_first = |cell: &&Cell<D>| {
+            let mut order = **cell;
+            order.reverse();
+            order
+        };
         if cells.len() <= SAMPLE {
             return Some(self.clone());
         }
-        let corner = cells.iter().min_by_key(|cell| self.grid.linear(cell))?;
+        let corner = cells.iter().min_by_key(last_axis_first)?;
         let distance = |cell: &Cell<D>| {
             cell.iter()
                 .zip(corner)

@@ -42,11 +42,13 @@ pub struct Diagnostics<T> {
     pub virtual_cells: usize,
     /// Mass of all particles.
     pub total_mass: T,
-    /// Work of walls that rub on the particles (J), since the start.
+    /// Work of walls that rub on the particles (J), since the start: of their impulses with the velocities after them.
     pub wall_work: T,
     /// Most work (J) in one step of their impulses with velocities relative to them, zero if it never was positive: walls
     /// at rest only take energy.
     pub wall_gain: T,
+    /// Steps in which the impulses of walls were not found within the tolerance.
+    pub unsolved_contacts: usize,
 }
 
 /// Energy of the particles (1-D: J/m2, 2-D: J/m, 3-D: J).
@@ -95,6 +97,7 @@ impl<T: Scalar> Diagnostics<T> {
             total_mass,
             wall_work: T::zero(),
             wall_gain: T::zero(),
+            unsolved_contacts: 0,
         }
     }
 
@@ -116,6 +119,7 @@ impl<T: Scalar> Diagnostics<T> {
     pub(super) fn record_walls<const D: usize>(&mut self, action: &WallAction<T, D>) {
         self.wall_work += action.work;
         self.wall_gain = self.wall_gain.max(action.rubbing);
+        self.unsolved_contacts += usize::from(!action.solved);
     }
 
     /// Compares the mapped totals with those of the particles.
@@ -261,20 +265,19 @@ where
         })
     }
 
-    /// Keeps the velocities of the particles, and of their liquid.
-    pub(super) fn keep_velocities(&mut self) {
-        let [solid, liquid] = &mut self.before;
-        solid.clone_from(&self.particles.velocity);
-        if P::FLOWS {
-            let data = self.particles.phase.iter();
-            liquid.clear();
-            liquid.extend(data.map(|data| self.phase.liquid(data).velocity));
-        }
+    /// Copies of the velocities of the particles, and of their liquid.
+    pub(super) fn velocities(&self) -> [Vec<SVector<T, D>>; 2] {
+        let data = self.particles.phase.iter();
+        let liquid = match P::FLOWS {
+            true => data.map(|data| self.phase.liquid(data).velocity).collect(),
+            false => Vec::new(),
+        };
+        [self.particles.velocity.clone(), liquid]
     }
 
-    /// `sum m v . v' / 2` of the velocities kept and those now.
-    pub(super) fn kinetic_energy_across(&self) -> T {
-        let ([solid, liquid], particles) = (&self.before, &self.particles);
+    /// `sum m v . v' / 2` of the velocities before and those now.
+    pub(super) fn kinetic_energy_across(&self, [solid, liquid]: &[Vec<SVector<T, D>>; 2]) -> T {
+        let particles = &self.particles;
         let mut twice = T::zero();
         for ((before, now), &mass) in solid.iter().zip(&particles.velocity).zip(&particles.mass) {
             twice += before.dot(now) * mass;

@@ -138,6 +138,19 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
             if flows && rubs {
                 return Err(StepError::FrictionWithFlow { face });
             }
+            if let FaceCondition::Frictional {
+                coefficient,
+                velocity,
+            } = self.face(face)
+            {
+                let sound = *coefficient >= T::zero()
+                    && coefficient.is_finite()
+                    && velocity.iter().all(|v| v.is_finite());
+                if !sound {
+                    let coefficient = coefficient.primal();
+                    return Err(StepError::Friction { face, coefficient });
+                }
+            }
             if !flows && matches!(self.pores(face), PoreCondition::Pressure(_)) {
                 return Err(StepError::PressureWithoutFlow { face });
             }

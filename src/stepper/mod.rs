@@ -7,7 +7,7 @@
 //! 1. `forces`: $m_i = \sum_p m_p\phi_i(x_p)$ and $f_i = -\int\sigma\nabla\phi_i + \text{traction}$;
 //! 2. `acceleration`: $a_i = f_i/m_i + b$, the prescribed value on constrained DOFs;
 //! 3. `velocity`: $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p) a_i$, then DOF velocities from the updated particles, whose
-//!    momenta `mapping` puts to the DOFs;
+//!    momenta `mapping` puts to the DOFs, and the impulses of walls that rub (`contact`);
 //! 4. `advance`: position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$, stress by the law,
 //!    volume by $\det(1+\Delta\varepsilon)$ at large strain.
 //!
@@ -135,8 +135,6 @@ where
     /// Stresses as the relaxation would have them; empty but for laws that remember.
     relaxed: Vec<SMatrix<T, D, D>>,
     balance: balance::Balance<T, D>,
-    /// Velocities before a step whose energy is measured: of particles, and of their liquid.
-    before: [Vec<SVector<T, D>>; 2],
     /// Contact with walls that rub.
     contact: contact::WallContact<T, D>,
     /// What the particles of a cell add to their matrix.
@@ -256,7 +254,6 @@ where
             crossed: Vec::with_capacity(crossed_count),
             relaxed: vec![SMatrix::zeros(); relaxed_count],
             balance: balance::Balance::none(),
-            before: [Vec::new(), Vec::new()],
             contact: contact::WallContact::none(),
             pairs: Pairs::new(R::PARTICLE_MATRIX || sums_matrix),
             body_forces: Vec::new(),
@@ -342,7 +339,7 @@ where
         self.send_step([kick, dt], forcing, false).map(|_| ())
     }
 
-    /// The same, and the energy at the step's start: see [`Energy`].
+    /// The same, and the energy at the step's start: see [`Energy`]. Takes memory for the velocities before the step.
     ///
     /// # Errors
     /// As those of [`Stepper::step_with_kick`].
@@ -390,18 +387,16 @@ where
         forcing: &Forcing<T, D>,
         measure: bool,
     ) -> Result<Energy<T>, StepError> {
-        let mut energy = Energy::none();
         self.prepare();
-        if measure {
-            energy.strain = self.strain_energy();
-            self.keep_velocities();
+        if !measure {
+            self.kick(kick, forcing);
+            return self.drift(dt).map(|()| Energy::none());
         }
+        let (strain, before) = (self.strain_energy(), self.velocities());
         self.kick(kick, forcing);
-        if measure {
-            energy.kinetic = self.kinetic_energy_across();
-        }
+        let kinetic = self.kinetic_energy_across(&before);
         self.drift(dt)?;
-        Ok(energy)
+        Ok(Energy { kinetic, strain })
     }
 
     /// Velocities of particles and DOFs.
@@ -571,8 +566,9 @@ where
         &self.diagnostics
     }
 
-    /// Bytes of the stepper and of all that it allocates: particles, their cells, what basis and reconstruction hold, DOFs. Steps allocate nothing beyond, but
-    /// where particles move so far through a large grid that its [`Window`](crate::grid::Window) moves with them.
+    /// Bytes of the stepper and of all that it allocates: particles, their cells, what basis and reconstruction hold, DOFs. Steps
+    /// allocate nothing beyond, but the first one in which walls rub that did not before, and where particles move so far through
+    /// a large grid that its [`Window`](crate::grid::Window) moves with them.
     pub fn bytes(&self) -> usize {
         let both = size_of::<T>() + size_of::<liquid::Sums<T, D>>() + 2 * size_of::<SVector<T, D>>();
         size_of::<Self>()
@@ -586,7 +582,6 @@ where
             + self.spans.bytes()
             + self.pairs.bytes()
             + self.contact.bytes()
-            + size_of::<SVector<T, D>>() * self.before.iter().map(Vec::capacity).sum::<usize>()
             + size_of::<Crossed<T>>() * self.crossed.capacity()
             + size_of::<SMatrix<T, D, D>>() * self.relaxed.capacity()
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()

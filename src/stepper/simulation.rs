@@ -181,6 +181,7 @@ where
             total_mass,
             wall_work,
             wall_gain,
+            unsolved_contacts,
         } = self.diagnostics;
         Diagnostics {
             conservation: cast_conservation(&conservation),
@@ -191,6 +192,7 @@ where
             total_mass: total_mass.primal(),
             wall_work: wall_work.primal(),
             wall_gain: wall_gain.primal(),
+            unsolved_contacts,
         }
     }
 

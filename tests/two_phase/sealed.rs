@@ -191,23 +191,6 @@ fn a_sealed_box_is_undrained_with_any_number_of_particles_across() {
     }
 }
 
-#[test]
-fn a_sealed_box_in_space_is_undrained() {
-    let space = [
-        "grid={min=[0, 0, 0], max=[1, 1, 1], cells=[2, 3, 4]}".to_owned(),
-        "body=[{min=[0, 0, 0], max=[1, 1, 1], particles_per_cell=[2, 2, 2]}]".to_owned(),
-        "boundary=[{face='x-min', roller=true}, {face='x-max', roller=true}, {face='y-min', roller=true},
-        {face='y-max', roller=true}, {face='z-min', roller=true},
-        {face='z-max', traction=['0', '0', '-1e4*sin(pi/2*min(t/0.3, 1))^2']}]"
-            .to_owned(),
-    ];
-    for basis in BASES {
-        let set = [&space[..], &method(basis, "shepard")].concat();
-        let outcome = run_in::<3>(&scene(SEALED_BOX, &set), None, &mut |_| {}).unwrap();
-        check(&outcome, &set, -LOAD * Q / (Q + M), LOAD * LOAD / (2.0 * (Q + M)));
-    }
-}
-
 /// The surface lies where a cell ends, deep in a cell, and barely in one. There the load itself is felt up to
 /// a fifth too weak or strong by single particles, since a cut cell's particles are poor points of its
 /// integral; the liquid takes its share of what is felt.

@@ -46,7 +46,11 @@ fn travels<const D: usize>(
 ) -> Result<Option<String>, RunError> {
     let mut there = scene.boundaries.iter().filter(|boundary| boundary.face == face);
     let Some(normal) = there.find_map(|boundary| match &boundary.kind {
-        BoundaryKind::Velocity(velocity) => velocity.get(face.axis),
+        BoundaryKind::Velocity(velocity)
+        | BoundaryKind::Frictional {
+            velocity: Some(velocity),
+            ..
+        } => velocity.get(face.axis),
         _ => None,
     }) else {
         return Ok(None);

@@ -11,7 +11,7 @@
 //!
 //! Not saved is what follows from the [`Setup`](super::Setup) (grid, law, phase, DOFs of the faces) or is made anew before it is
 //! used: basis and reconstruction take in where the particles are at the start of a step, as the lists of the cells and the cuts
-//! of the surfaces; mass, forces, velocities, matrices and drag of the DOFs and the part of a cell that a wave crosses are summed
+//! of the surfaces; impulses of walls are found from nothing in each step; mass, forces, velocities, matrices and drag of the DOFs and the part of a cell that a wave crosses are summed
 //! from the particles. Body forces ([`Stepper::set_body_forces`]) are loads, which the caller sets again.
 
 mod codec;
@@ -167,6 +167,7 @@ impl<T: Scalar> Diagnostics<T> {
             virtual_cells,
             wall_work,
             wall_gain,
+            unsolved_contacts,
             // Of the setup, as whether a liquid flows.
             total_mass: _,
         } = self;
@@ -184,6 +185,7 @@ impl<T: Scalar> Diagnostics<T> {
         out.count(*grid_crossings)?;
         out.count(*reduced_cells)?;
         out.count(*virtual_cells)?;
+        out.count(*unsolved_contacts)?;
         out.numbers(&[*wall_work, *wall_gain])
     }
 
@@ -203,6 +205,7 @@ impl<T: Scalar> Diagnostics<T> {
         self.grid_crossings = from.count()?;
         self.reduced_cells = from.count()?;
         self.virtual_cells = from.count()?;
+        self.unsolved_contacts = from.count()?;
         from.numbers(std::slice::from_mut(&mut self.wall_work))?;
         from.numbers(std::slice::from_mut(&mut self.wall_gain))?;
         Ok(())

@@ -50,7 +50,11 @@ where
     /// Solves for the impulses and passes them on.
     pub(super) fn push_by_mapping(&mut self, forcing: &Forcing<T, D>, scale: T) -> WallAction<T, D> {
         let rest = at_rest(forcing);
-        let mut action = WallAction::none();
+        let mut action = WallAction {
+            solved: false,
+            ..WallAction::none()
+        };
+        let least = (scale * T::lit(TOLERANCE)).max(self.contact.round_off());
         self.contact.reached.copy_from_slice(&self.dofs.velocity);
         self.probe_columns(&rest);
         self.contact.impulse.fill(SVector::zeros());
@@ -67,13 +71,15 @@ where
                 velocity: &mut contact.velocity,
                 closed: &contact.closed,
             };
-            if !problem.solve(scale, TOLERANCE) {
+            if !problem.solve(least).changed {
+                action.solved = true;
                 break;
             }
             contact.lay_new_impulses();
             self.respond(&rest);
             let after = self.contact.energy_with(&self.dofs.velocity);
-            if after - energy > energy.abs() * T::lit(RISE) {
+            // Only where the particles' matrix makes the operator symmetric is this their energy.
+            if R::PARTICLE_MATRIX && after - energy > energy.abs() * T::lit(RISE) {
                 self.contact.take_back();
                 continue;
             }

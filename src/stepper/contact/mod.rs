@@ -40,6 +40,8 @@ use wall::{Contact, Wall, WallDofs};
 
 /// Distance of a particle's surface from a wall, in cells, below which they touch.
 const CLOSED: f64 = 0.02;
+/// Round-offs of a velocity that no tolerance is below.
+const ROUND_OFF: f64 = 16.0;
 
 /// What contact with walls needs; nothing where none rubs.
 #[derive(Clone, Debug)]
@@ -75,6 +77,8 @@ pub(super) struct WallAction<T, const D: usize> {
     pub(super) work: T,
     /// The same with the velocity relative to the wall (J), what friction takes: never positive.
     pub(super) rubbing: T,
+    /// Whether the impulses were found within the tolerance.
+    pub(super) solved: bool,
 }
 
 impl<T: Scalar, const D: usize> WallAction<T, D> {
@@ -83,6 +87,7 @@ impl<T: Scalar, const D: usize> WallAction<T, D> {
             impulse: SVector::zeros(),
             work: T::zero(),
             rubbing: T::zero(),
+            solved: true,
         }
     }
 }
@@ -135,6 +140,19 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
         contacts
             .map(|contact| (self.velocity[contact.place] - contact.wall.velocity).norm())
             .fold(T::zero(), T::max)
+    }
+
+    /// Round-off (m/s) of velocities at the walls.
+    fn round_off(&self) -> T {
+        let contacts = self.closed.iter().map(|&k| &self.dofs.contacts[k as usize]);
+        let largest = contacts
+            .map(|contact| {
+                self.velocity[contact.place]
+                    .norm()
+                    .max(contact.wall.velocity.norm())
+            })
+            .fold(T::zero(), T::max);
+        largest * T::default_epsilon() * T::lit(ROUND_OFF)
     }
 
     /// Takes in the velocities of all DOFs.

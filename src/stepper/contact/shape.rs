@@ -17,7 +17,7 @@ pub(super) fn shapes<T: Scalar, const D: usize>(
 ) -> Vec<SVector<T, D>> {
     let cell_shape = normalised(*grid.cell_size());
     let mut shapes = vec![cell_shape; initial.len()];
-    // Positions at the start are in the grid: that was checked then.
+    // A caller's reference configuration may lie elsewhere.
     let Ok(bins) = Bins::without_lists(grid, initial) else {
         return shapes;
     };
@@ -25,11 +25,17 @@ pub(super) fn shapes<T: Scalar, const D: usize>(
     order.sort_by_key(|&p| *bins.cell_of(p));
     let mut coordinates = Vec::new();
     for cell in order.chunk_by(|&a, &b| bins.cell_of(a) == bins.cell_of(b)) {
-        let spacing: [Option<T>; D] = std::array::from_fn(|axis| {
+        let spacing: [Option<Spacing<T>>; D] = std::array::from_fn(|axis| {
             coordinates.clear();
             coordinates.extend(cell.iter().map(|&p| initial[p][axis]));
             spacing(&mut coordinates, grid.cell_size()[axis])
         });
+        // In no order: every particle has coordinates of its own along every axis.
+        let rows = spacing.map(|spacing| spacing.map(|spacing| spacing.rows));
+        if D > 1 && cell.len() > 1 && rows.iter().all(|&rows| rows == Some(cell.len())) {
+            continue;
+        }
+        let spacing = spacing.map(|spacing| spacing.map(|spacing| spacing.size));
         let known = spacing.iter().zip(grid.cell_size().iter());
         let shares: Vec<T> = known.filter_map(|(s, &h)| s.map(|s| s / h)).collect();
         if shares.is_empty() {
@@ -45,8 +51,17 @@ pub(super) fn shapes<T: Scalar, const D: usize>(
     shapes
 }
 
-/// Mean distance of different coordinates in a cell of size `cell`; `None` if all are alike.
-fn spacing<T: Scalar>(coordinates: &mut [T], cell: T) -> Option<T> {
+/// Different coordinates of the particles of a cell along an axis.
+#[derive(Clone, Copy)]
+struct Spacing<T> {
+    /// How many there are.
+    rows: usize,
+    /// Their mean distance.
+    size: T,
+}
+
+/// The spacing in a cell of size `cell`; `None` if all coordinates are alike.
+fn spacing<T: Scalar>(coordinates: &mut [T], cell: T) -> Option<Spacing<T>> {
     coordinates.sort_by(|a, b| a.primal().total_cmp(&b.primal()));
     let alike = cell * T::lit(ALIKE);
     let gaps = coordinates
@@ -54,7 +69,10 @@ fn spacing<T: Scalar>(coordinates: &mut [T], cell: T) -> Option<T> {
         .filter(|pair| pair[1] - pair[0] > alike)
         .count();
     let (first, last) = (coordinates.first()?, coordinates.last()?);
-    (gaps > 0).then(|| (*last - *first) / T::count(gaps))
+    (gaps > 0).then(|| Spacing {
+        rows: gaps + 1,
+        size: (*last - *first) / T::count(gaps),
+    })
 }
 
 /// The vector over the `D`-th root of its components' product.

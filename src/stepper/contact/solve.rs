@@ -14,12 +14,8 @@ use crate::scalar::Scalar;
 
 /// Over-relaxation of a sweep.
 const RELAXATION: f64 = 1.2;
-/// Round-offs that the tolerance is at least.
-const ROUND_OFF: f64 = 16.0;
 /// Sweeps after which the impulses are taken as they are.
-const MOST_SWEEPS: usize = 2000;
-/// Turns of normal and tangential impulses where walls meet.
-const MOST_TURNS: usize = 200;
+const MOST_SWEEPS: usize = 4000;
 
 /// The velocities of the walls' DOFs under the impulses of the contacts.
 pub(super) struct Problem<'a, T, const D: usize> {
@@ -31,34 +27,62 @@ pub(super) struct Problem<'a, T, const D: usize> {
     pub(super) closed: &'a [u32],
 }
 
+/// What became of a solution.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solved {
+    /// Whether impulses had to change at all.
+    pub(super) changed: bool,
+    /// Whether nothing changes any more.
+    pub(super) settled: bool,
+}
+
 impl<T: Scalar, const D: usize> Problem<'_, T, D> {
-    /// Changes impulses and velocities until the law holds everywhere within the share `tolerance` of `scale` (m/s), the walls'
-    /// greatest relative velocity. Returns whether anything had to be changed by more than that.
-    pub(super) fn solve(&mut self, scale: T, tolerance: f64) -> bool {
-        let least = T::lit(tolerance).max(T::default_epsilon() * T::lit(ROUND_OFF)) * scale;
-        let mut changed = false;
-        for _ in 0..MOST_TURNS {
-            let moved = self.sweeps(least, Self::press) | self.sweeps(least, Self::rub);
-            changed |= moved;
-            if !moved || self.dofs.walls() == 1 {
-                break;
+    /// Changes impulses and velocities until no sweep changes a velocity by more than `least` (m/s).
+    pub(super) fn solve(&mut self, least: T) -> Solved {
+        let mut solved = Solved {
+            changed: false,
+            settled: true,
+        };
+        let mut left = MOST_SWEEPS;
+        loop {
+            let moved = self.sweeps(least, &mut left, Self::press) | self.sweeps(least, &mut left, Self::rub);
+            solved.changed |= moved;
+            if left == 0 {
+                solved.settled = false;
+                return solved;
+            }
+            if !moved || !self.walls_meet() {
+                return solved;
             }
         }
-        changed
     }
 
-    /// Sweeps over the contacts until no velocity changes by more than `least`; returns whether the first one did.
-    fn sweeps(&mut self, least: T, update: fn(&mut Self, usize) -> T) -> bool {
-        for sweep in 0..MOST_SWEEPS {
+    /// Whether contacts with walls along different axes are closed.
+    fn walls_meet(&self) -> bool {
+        let mut axes = self
+            .closed
+            .iter()
+            .map(|&k| self.dofs.contacts[k as usize].wall.face.axis);
+        let first = axes.next();
+        axes.any(|axis| Some(axis) != first)
+    }
+
+    /// Sweeps over the contacts until no velocity changes by more than `least`, or none of the sweeps is `left`; returns whether
+    /// the first one did change any.
+    fn sweeps(&mut self, least: T, left: &mut usize, update: fn(&mut Self, usize) -> T) -> bool {
+        let mut moved = false;
+        while *left > 0 {
             let mut largest = T::zero();
             for &contact in self.closed {
                 largest = largest.max(update(self, contact as usize));
             }
             if largest <= least {
-                return sweep > 0;
+                return moved;
             }
+            moved = true;
+            *left -= 1;
         }
-        true
+        moved
     }
 
     /// The normal impulse of a contact; returns by how much it changed the velocity there.

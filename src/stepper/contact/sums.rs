@@ -25,6 +25,7 @@ where
     /// Solves for the impulses and passes them on.
     pub(super) fn push_by_sums(&mut self, scale: T) -> WallAction<T, D> {
         let contact = &mut self.contact;
+        let least = (scale * T::lit(TOLERANCE)).max(contact.round_off());
         contact.delassus.sum_up(&contact.dofs, &contact.inverse);
         contact.delassus.complete(&contact.dofs);
         let mut problem = Problem {
@@ -33,14 +34,17 @@ where
             velocity: &mut contact.velocity,
             closed: &contact.closed,
         };
-        if !problem.solve(scale, TOLERANCE) {
+        let solved = problem.solve(least);
+        if !solved.changed {
             return WallAction::none();
         }
         contact.add_up_impulses();
         for (impulse, inverse) in contact.impulse.iter_mut().zip(&contact.inverse) {
             impulse.component_mul_assign(inverse);
         }
-        self.pass_on()
+        let mut action = self.pass_on();
+        action.solved = solved.settled;
+        action
     }
 
     /// `v_p += sum_i phi_i N R_i`, and the momentum gained to all DOFs that the particle sees.

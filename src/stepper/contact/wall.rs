@@ -239,10 +239,6 @@ impl<T: Scalar, const D: usize> WallDofs<T, D> {
         &self.neighbours
     }
 
-    pub(super) fn walls(&self) -> usize {
-        self.faces.len()
-    }
-
     pub(super) fn bytes(&self) -> usize {
         size_of::<u32>() * (self.dofs.capacity() + self.places.capacity() + self.neighbours.capacity())
             + size_of::<usize>() * (self.starts.capacity() + self.contact_starts.capacity())
