@@ -299,7 +299,8 @@ mod tests {
     #[test]
     fn a_ratio_to_next_to_nothing_is_left_out() {
         let set = [
-            "body.0.velocity=[\"1e-160\"]".to_owned(),
+            "body.0.velocity=[\"1e-320\"]".to_owned(),
+            "time.end=1".to_owned(),
             "load.body_force=[\"1\"]".to_owned(),
         ];
         let scene = Scene::from_toml(BAR, &set).unwrap();

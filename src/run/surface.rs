@@ -68,8 +68,7 @@ fn is_needed<const D: usize>(scene: &Scene, face: Face) -> bool {
     must_be_known::<D>(scene) || boundary.is_some_and(|b| matches!(b.kind, BoundaryKind::Traction(_)))
 }
 
-/// Whether the end of the body's box meets a wall of the grid that holds the solid and lets no liquid pass;
-/// in one phase there is no liquid.
+/// Whether the end of the body's box meets a wall of the grid that holds the solid and lets no liquid pass.
 fn is_sealed_wall(scene: &Scene, body: &Body, face: Face) -> bool {
     let boundary = scene.boundaries.iter().find(|boundary| boundary.face == face);
     let sealed_wall = |boundary: &Boundary| boundary.is_held() && !boundary.is_open();
@@ -78,7 +77,7 @@ fn is_sealed_wall(scene: &Scene, body: &Body, face: Face) -> bool {
         Side::Min => same(&body.min, &scene.grid.min),
         Side::Max => same(&body.max, &scene.grid.max),
     };
-    scene.material.phases.count() > 1 && at_face && boundary.is_some_and(sealed_wall)
+    at_face && boundary.is_some_and(sealed_wall)
 }
 
 /// A particle beyond which, towards a face, its body has no other.

@@ -64,6 +64,11 @@ impl Order {
         }
         self.crossings = from.count()?;
         self.moved = from.flag()?;
+        // Those without numbers of their own never move.
+        if self.moved && self.numbers.is_empty() {
+            let what = "the order of the particles";
+            return Err(RestoreError::Invalid { what, index: 0 });
+        }
         Ok(())
     }
 }

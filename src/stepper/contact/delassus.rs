@@ -84,6 +84,28 @@ impl<T: Scalar, const D: usize> Delassus<T, D> {
         }
     }
 
+    /// Makes each diagonal at least the sum of what couples to it. An operator that is not quite symmetric, or was asked for at
+    /// some DOFs only, may otherwise have no solution that sweeps find.
+    pub(super) fn dominate(&mut self, dofs: &WallDofs<T, D>) {
+        for (place, own) in self.diagonal.iter_mut().enumerate() {
+            let row = dofs.row(place);
+            let couplings = dofs.neighbours()[row.clone()].iter().zip(&mut self.entries[row]);
+            let (mut sum, mut at) = (SVector::zeros(), None);
+            for (&neighbour, entry) in couplings {
+                match neighbour as usize == place {
+                    true => at = Some(entry),
+                    false => sum += entry.abs(),
+                }
+            }
+            // Components that another face holds respond to nothing.
+            let larger = own.zip_map(&sum, |own, sum| if own > T::zero() { own.max(sum) } else { own });
+            *own = larger;
+            if let Some(entry) = at {
+                *entry = larger;
+            }
+        }
+    }
+
     /// Makes all entries larger.
     pub(super) fn enlarge(&mut self, by: T) {
         for entry in self.entries.iter_mut().chain(&mut self.diagonal) {

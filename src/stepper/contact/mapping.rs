@@ -26,6 +26,8 @@ const MOST_CORRECTIONS: usize = 80;
 /// By so much the operator is made larger when impulses were too large: one that is larger than the mapping's own gives
 /// smaller steps, which never overshoot.
 const LARGER: f64 = 2.0;
+/// By so much a correction may be larger than the one before.
+const GROWTH: f64 = 2.0;
 /// Share of the energy that impulses take by which it may rise again: bounds of friction move with what presses.
 const RISE: f64 = 1e-3;
 
@@ -60,7 +62,7 @@ where
         self.contact.impulse.fill(SVector::zeros());
         self.contact.read_reached();
         self.contact.begin_corrections();
-        let mut energy = T::zero();
+        let (mut energy, mut last, mut failures) = (T::zero(), T::lit(f64::INFINITY), 0);
         for _ in 0..MOST_CORRECTIONS {
             let contact = &mut self.contact;
             contact.read_reached();
@@ -71,16 +73,26 @@ where
                 velocity: &mut contact.velocity,
                 closed: &contact.closed,
             };
-            if !problem.solve(least).changed {
+            let solved = problem.solve(least);
+            if !solved.changed {
                 action.solved = true;
                 break;
             }
+            let size = contact.correction();
+            if !(solved.settled && size <= last * T::lit(GROWTH)) {
+                failures += 1;
+                last = T::lit(f64::INFINITY);
+                contact.take_back(failures);
+                continue;
+            }
+            last = size;
             contact.lay_new_impulses();
             self.respond(&rest);
             let after = self.contact.energy_with(&self.dofs.velocity);
             // Only where the particles' matrix makes the operator symmetric is this their energy.
             if R::PARTICLE_MATRIX && after - energy > energy.abs() * T::lit(RISE) {
-                self.contact.take_back();
+                failures += 1;
+                self.contact.take_back(failures);
                 continue;
             }
             energy = after;
@@ -160,11 +172,28 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
         })
     }
 
-    /// Takes the last correction back; the next one will be smaller.
-    fn take_back(&mut self) {
+    /// Takes the last correction back; the next one will be smaller, and sure to be found.
+    fn take_back(&mut self, failures: usize) {
         self.dofs.contacts.clone_from(&self.tried);
         self.add_up_impulses();
-        self.delassus.enlarge(T::lit(LARGER));
+        match failures {
+            1 => self.delassus.dominate(&self.dofs),
+            _ => self.delassus.enlarge(T::lit(LARGER)),
+        }
+    }
+
+    /// Greatest change of velocity (m/s) at its own DOF by which a contact's impulse was corrected; no number if it is none.
+    fn correction(&self) -> T {
+        let mut most = T::zero();
+        for (now, before) in self.dofs.contacts.iter().zip(&self.tried) {
+            let change = now.impulse() - before.impulse();
+            let size = change.component_mul(&self.delassus.diagonal[now.place]).norm();
+            if !size.is_finite() {
+                return T::lit(f64::NAN);
+            }
+            most = most.max(size);
+        }
+        most
     }
 
     fn read_reached(&mut self) {
