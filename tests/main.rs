@@ -2,6 +2,7 @@
 
 mod allocation;
 mod boundaries;
+mod cases;
 mod command;
 mod conservation;
 mod convergence;
