@@ -35,14 +35,16 @@ fn left_out<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     held: &[u32],
 ) -> Option<usize> {
     let (axis, window) = (face.axis, grid.window());
-    let mut cell: Cell<D> = window.first();
+    // In the middle of the window: functions of some bases reach into cells beside.
+    let (first, shape) = (window.first(), window.shape());
+    let mut cell: Cell<D> = std::array::from_fn(|a| first[a] + shape[a] as u32 / 2);
     let end = match face.side {
         Side::Min => 0,
         Side::Max => grid.cells()[axis] as u32,
     };
     let reaches = match face.side {
-        Side::Min => cell[axis] == 0,
-        Side::Max => cell[axis] as usize + window.shape()[axis] == grid.cells()[axis],
+        Side::Min => first[axis] == 0,
+        Side::Max => first[axis] as usize + shape[axis] == grid.cells()[axis],
     };
     if B::HOLDS_ABOUT || !reaches {
         return None;

@@ -82,9 +82,9 @@ where
         }
     }
 
-    /// Parts of each occupied cell that are crossed in a step: by the fastest wave through any of its particles along the shortest
-    /// side, for a wave runs every way, and by the particles in root mean square, who run along their own. All particles of a cell
-    /// count alike, so that neither their order nor a mirror matters.
+    /// Parts of each occupied cell that are crossed in a step, in root mean square over its particles: by waves along the shortest
+    /// side, for they run every way, and by the particles, who run along their own. All particles of a cell count alike, so that
+    /// neither their order nor a mirror matters.
     pub(super) fn measure_crossings(&mut self, dt: T) {
         let occupied = self.bins.occupied();
         let mut crossed = std::mem::take(&mut self.crossed);
@@ -109,15 +109,17 @@ where
         let inverse = self.grid.inverse_cell_size();
         let particles = self.bins.particles_in(cell);
         // Also where a law has no wave any more: there is then nothing to relax.
-        let (mut fastest, mut squares) = (T::zero(), T::zero());
+        let (mut waves, mut squares) = (T::zero(), T::zero());
         for &p in particles {
             let p = p as usize;
-            fastest = fastest.max(self.wave_speed(p));
+            let speed = self.wave_speed(p).max(T::zero());
+            waves += speed * speed;
             squares += self.particles.velocity[p].component_mul(inverse).norm_squared();
         }
+        let count = T::count(particles.len().max(1));
         Crossed {
-            wave: fastest * inverse.max() * dt,
-            motion: (squares / T::count(particles.len().max(1))).sqrt() * dt,
+            wave: (waves / count).sqrt() * inverse.max() * dt,
+            motion: (squares / count).sqrt() * dt,
         }
     }
 
