@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::cells::RelaxedCell;
+use super::cells::{Kind, RelaxedCell};
 use super::determined::seen_by_particles;
 use super::four::{FourFits, KeptProducts, keep_gram};
 use super::{GROUPS, RelaxedTaylor};
@@ -63,6 +63,9 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             self.leave_short_runs(cloud);
         }
         for place in 0..self.cells.len() {
+            if self.cells[place].filling == Filling::Part && self.sees_squares_beside(cloud, place) {
+                self.cells[place].filling = Filling::Full;
+            }
             let is_alone = match self.cells[place].filling {
                 Filling::Few => !self.is_held(cloud, place),
                 Filling::Part => self.is_thin(cloud, place),
@@ -100,6 +103,17 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             }
         });
         held
+    }
+
+    /// Whether a whole cell whose particles see no squares, as happens for a while where particles cross, is beside one whose
+    /// particles do: they share functions, and a tie would only smooth what is determined.
+    fn sees_squares_beside(&self, cloud: &Cloud<'_, T, D>, place: usize) -> bool {
+        let mut seen = false;
+        if self.cells[place].kind == Kind::Four {
+            let neighbours = |_, _, other: usize| seen |= self.cells[other].is_full;
+            cloud.bins.for_each_neighbour(cloud.grid, place, neighbours);
+        }
+        seen
     }
 
     /// Whether particles see no square in a cell, and it has no neighbours along an axis that would know.
