@@ -203,7 +203,7 @@ fn a_part_of_the_page_on_long_runs_is_written_anew() {
         "{page}"
     );
     assert!(
-        page.contains("| MPM + spline | consistent | 3.") && page.contains(": volume -"),
+        page.contains("| MPM + spline | consistent | 3.") && page.contains(": stress beyond E"),
         "{page}"
     );
     assert_eq!(

@@ -151,12 +151,11 @@ fn lone_particles_move_as_they_did() {
                 let alike = (v[0] + 0.9).abs() < 1e-9 && (v[1] - 0.1).abs() < 1e-9;
                 assert!(moved && alike && s.amax() < 1e-6, "{name}, {place}: {u} {v} {s}");
             }
-            assert_eq!(
-                outcome.summary.warnings.len(),
-                1,
-                "{:?}",
-                outcome.summary.warnings
-            );
+            let warnings = &outcome.summary.warnings;
+            let warned = warnings
+                .iter()
+                .any(|warning| warning.contains("particles_per_cell = [1, 1]"));
+            assert!(warned, "{warnings:?}");
         }
     }
 }

@@ -100,10 +100,10 @@ fn discs_meet_and_part_and_keep_momentum_and_energy() {
 }
 
 /// Cells that hold both bodies fit one polynomial through them. Measured: energy between 0.76 and 1.09 of the first with linear
-/// functions, 0.87 and 1.24 with dual domain, 0.86 and 1.07 with B-splines.
+/// functions, 0.87 and 1.24 with dual domain, 0.79 and 1.003 with B-splines (0.86 and 1.07 before their cells were tied).
 #[test]
 fn relaxed_taylor_fits_one_polynomial_through_both_discs() {
-    for (basis, [lowest, highest]) in BASES.into_iter().zip([[0.72, 1.15], [0.82, 1.35], [0.82, 1.12]]) {
+    for (basis, [lowest, highest]) in BASES.into_iter().zip([[0.72, 1.15], [0.82, 1.35], [0.75, 1.05]]) {
         let found = impact(Method::new(basis, ReconstructionKind::RelaxedTaylor), 20);
         assert!(found.momentum < 1e-13, "{found:?}");
         assert!(

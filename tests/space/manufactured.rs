@@ -81,7 +81,8 @@ fn jittered_particles_converge_too() {
     check_with(LINEAR, Taylor, &jitter, [9.65e-2, 4.84e-2]);
     check_with(BSPLINE, Taylor, &jitter, [9.10e-2, 4.22e-2]);
     check_with(LINEAR, RelaxedTaylor, &jitter, [5.00e-2, 1.53e-2]);
-    check_with(BSPLINE, RelaxedTaylor, &jitter, [1.89e-2, 5.70e-3]);
+    // 1.89e-2 before cells in which particles see no squares were tied.
+    check_with(BSPLINE, RelaxedTaylor, &jitter, [1.17e-2, 5.70e-3]);
     // On 32 cells the error with 2 % was 0.27.
     assert!(plane(LINEAR, Taylor, 32, &jitter) < 4e-2);
 }

@@ -101,13 +101,15 @@ fn particle_sums_do_not_integrate_a_constant() {
     }
 }
 
-/// Measured 4e-2 (linear), 3e-2 (dual domain) and 0.141 (B-splines) where particles leave a wall; exact in three layouts of five.
+/// Jittered particles leave no gap beside a wall that moments of their volumes would see. Taken for cubes they did: 4e-2 (linear),
+/// 3e-2 (dual domain) and 0.141 (B-splines) of the stress.
 #[test]
-fn relaxed_taylor_takes_a_gap_beside_a_wall_for_a_free_side() {
-    for (method, expected) in with(RelaxedTaylor).zip([4.2e-2, 3.3e-2, 0.141]) {
-        let found = change_in_the_plane(method, 1, 1.0, STRESS);
-        assert!((found / expected - 1.0).abs() < 0.1, "{method}: {found}");
-        assert!(change_in_the_plane(method, 0, 1.0, STRESS) < 1e-13);
+fn relaxed_taylor_takes_no_jitter_beside_a_wall_for_a_free_side() {
+    for method in with(RelaxedTaylor) {
+        for seed in 0..5 {
+            let found = change_in_the_plane(method, seed, 1.0, STRESS);
+            assert!(found < 1e-12, "{method} {seed}: {found}");
+        }
     }
 }
 
