@@ -582,6 +582,8 @@ where
             + self.spans.bytes()
             + self.pairs.bytes()
             + self.contact.bytes()
+            + size_of::<SurfacePoint<T>>() * self.surface.capacity()
+            + size_of::<Cut<T>>() * self.cuts.capacity()
             + size_of::<Crossed<T>>() * self.crossed.capacity()
             + size_of::<SMatrix<T, D, D>>() * self.relaxed.capacity()
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()
