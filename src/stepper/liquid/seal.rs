@@ -247,7 +247,7 @@ impl<T: Scalar> Gradients<T> {
     fn advance(&mut self, size: T) -> bool {
         let along = self.direction.iter().zip(&self.image);
         let curvature = along.fold(T::zero(), |sum, (&d, &i)| sum + d * i);
-        if !(curvature > T::zero()) {
+        if curvature <= T::zero() || !curvature.is_finite() {
             return false;
         }
         let length = size / curvature;

@@ -7,6 +7,7 @@ use super::super::{FaceCondition, Forcing, PoreCondition, Stepper, SurfacePoint}
 use super::seal::{Answer, Place, Seal};
 use crate::basis::BasisFamily;
 use crate::field::Pair;
+use crate::grid::Side;
 use crate::law::ConstitutiveLaw;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
@@ -128,12 +129,21 @@ where
             if !is_sealed(forcing, point) {
                 continue;
             }
-            let x = self.surface_position(point);
             let cell = self.bins.cell_of(point.particle);
+            let layer = cell[point.face.axis] as usize;
+            let end = match point.face.side {
+                Side::Min => 0,
+                Side::Max => self.grid.cells()[point.face.axis] - 1,
+            };
+            // A wall that the body has reached seals it by its own DOFs, and the slip next to it is free.
+            if is_held(forcing, point) && layer == end {
+                continue;
+            }
+            let x = self.surface_position(point);
             let (basis, grid) = (&self.basis, &self.grid);
             let place = Place {
                 face: point.face,
-                layer: cell[point.face.axis] as usize,
+                layer,
                 shape,
             };
             self.seal.add_point(&place, point.area, |add| {
