@@ -153,9 +153,14 @@ fn a_run_holds_one_copy_of_its_particles() {
         let stepping = summary.bytes_per_particle * summary.particles as f64;
         // Particles, what the law tells of each, the reference's fields, one field of each at a time.
         let reporting = ((7 + 2 + 3 + 2) * 8 * summary.particles) as f64;
+        // Fits are asked for a stable step by a sample of at most 4096 of the particles, which is a stepper of its own.
+        let sample = match method.reconstruction {
+            ReconstructionKind::Shepard => 0.0,
+            _ => summary.bytes_per_particle * summary.particles.min(4096) as f64,
+        };
         assert!(
-            peak < 1.1 * stepping.max(reporting),
-            "{method}: {peak} {stepping} {reporting}"
+            peak < 1.1 * (stepping + 2.0 * sample).max(reporting),
+            "{method}: {peak} {stepping} {sample} {reporting}"
         );
     }
 }

@@ -150,8 +150,9 @@ impl Found {
     }
 }
 
-/// Of the 16 layouts: how many do not last (give or take one that is just about to show it).
-const PASSING: [(usize, usize); 6] = [(1, 5), (2, 4), (4, 14), (5, 3), (7, 15), (8, 4)];
+/// Of the 16 layouts: how many do not last (give or take one that is just about to show it). With fits that go on to the ends of
+/// cells, where scenes did not name the ends of a body, they were 5, 4, 14, 3, 15, 4.
+const PASSING: [(usize, usize); 6] = [(1, 2), (2, 1), (4, 14), (5, 3), (7, 11), (8, 0)];
 
 #[test]
 fn without_an_energy_some_layouts_are_and_the_prediction_holds_for_them() {
