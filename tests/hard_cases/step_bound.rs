@@ -130,7 +130,7 @@ fn in_full_cells_it_is_the_classical_one() {
 }
 
 /// A bar of 8000 particles, alike all along: what is found on the 4096 at its left end holds for all of it. (Of relaxed TLS, whose
-/// eigenvalues are real.) The particles at the cut see neighbours less, and 40 iterations settle a close pair of them to a per cent.
+/// eigenvalues are real.) Within 2 %: 0.8 % was measured with dual domain, and where it comes from was not looked into.
 #[test]
 fn a_sample_is_as_stiff_as_the_whole() {
     let has_real_ones = |method: &Method| method.reconstruction == ReconstructionKind::RelaxedTaylor;
