@@ -1,5 +1,6 @@
 //! Constitutive laws. Equations, states and verified figures of all: `docs/laws.md`.
 
+mod any;
 mod constant;
 mod drucker_prager;
 mod elastic_stretch;
@@ -10,12 +11,12 @@ mod logarithmic;
 mod moduli;
 mod neo_hookean;
 mod newtonian_fluid;
-#[cfg(feature = "scene")]
-pub(crate) mod one_of;
 mod record;
 mod st_venant_kirchhoff;
+mod sweep;
 mod von_mises;
 
+pub use any::AnyLaw;
 pub use drucker_prager::{ConeMatch, DruckerPrager, DruckerPragerState, Strength};
 pub use elastic_stretch::ElasticStretch;
 pub use hencky::Hencky;
@@ -28,6 +29,7 @@ pub use moduli::Moduli;
 pub use neo_hookean::{DeformationGradient, NeoHookean};
 pub use newtonian_fluid::{NewtonianFluid, VolumeRatio};
 pub use st_venant_kirchhoff::StVenantKirchhoff;
+pub use sweep::LawSweep;
 pub use von_mises::{VonMises, VonMisesState};
 
 use nalgebra::SMatrix;

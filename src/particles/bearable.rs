@@ -2,8 +2,8 @@
 
 use nalgebra::SMatrix;
 
-use super::start::start;
-use crate::law::ConstitutiveLaw;
+use super::start::starts;
+use crate::law::LawSweep;
 use crate::scalar::Scalar;
 
 /// Halvings of an interval: to the last digits of a double.
@@ -16,7 +16,7 @@ const NAMES: [&str; 3] = ["xx", "yy", "zz"];
 
 /// What `law` bears in place of a stress that it cannot start under, in words: for each normal stress the
 /// range beside the others.
-pub(super) fn bearable<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
+pub(super) fn bearable<T: Scalar, const D: usize, L: LawSweep<T, D>>(
     law: &L,
     stress: &SMatrix<T, D, D>,
     off_plane: Option<T>,
@@ -41,10 +41,13 @@ pub(super) fn bearable<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
         };
         return format!("the law bears {}{beside}", ranges.join(", or "));
     }
-    let starts = |factor: f64| start(law, &(stress * T::lit(factor)), off_plane).is_some();
-    if starts(1e-6) {
+    let bears = |factor: f64| {
+        let mut state = vec![L::Number::default(); law.numbers()];
+        starts(law, &(stress * T::lit(factor)), off_plane, &mut state)
+    };
+    if bears(1e-6) {
         "that is beyond its strength, whichever one of the normal stresses is changed".to_owned()
-    } else if starts(-1e-6) {
+    } else if bears(-1e-6) {
         "the law bears no such tension; of a compression the normal stresses are negative".to_owned()
     } else {
         "the law starts free of stress, or under a stress of another kind".to_owned()
@@ -59,11 +62,12 @@ struct Search<'a, T, const D: usize, L> {
     axis: usize,
 }
 
-impl<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> Search<'_, T, D, L> {
+impl<T: Scalar, const D: usize, L: LawSweep<T, D>> Search<'_, T, D, L> {
     fn is_borne(&self, value: T) -> bool {
         let mut stress = *self.stress;
         stress[(self.axis, self.axis)] = value;
-        start(self.law, &stress, self.off_plane).is_some()
+        let mut state = vec![L::Number::default(); self.law.numbers()];
+        starts(self.law, &stress, self.off_plane, &mut state)
     }
 
     /// The range around the mean of the other normal stresses, if that is borne: strength is least where they

@@ -30,6 +30,24 @@ impl<T: Scalar, const D: usize, S, P> Particles<T, D, S, P> {
     }
 }
 
+#[cfg(feature = "scene")]
+impl<T, const D: usize, S, P> Particles<T, D, S, P> {
+    /// The same particles with the states of a law.
+    pub(crate) fn with_states<S2>(self, state: Vec<S2>) -> Particles<T, D, S2, P> {
+        Particles {
+            initial_position: self.initial_position,
+            position: self.position,
+            displacement: self.displacement,
+            velocity: self.velocity,
+            stress: self.stress,
+            mass: self.mass,
+            volume: self.volume,
+            state,
+            phase: self.phase,
+        }
+    }
+}
+
 fn vectors<T: Scalar, U: Scalar, const R: usize, const C: usize>(
     values: Vec<SMatrix<T, R, C>>,
 ) -> Vec<SMatrix<U, R, C>> {

@@ -12,7 +12,7 @@ pub use bins::{Bins, Outside};
 #[cfg(feature = "scene")]
 pub(crate) use lattice::Lattice;
 pub use lattice::lattice;
-pub(crate) use movable::{Material, Movable, Movables};
+pub(crate) use movable::{Material, Movables};
 
 use nalgebra::{SMatrix, SVector};
 
@@ -42,7 +42,8 @@ pub struct Particles<T, const D: usize, S = (), P = ()> {
     pub mass: Vec<T>,
     /// Volume (1-D: m, 2-D: m2, 3-D: m3).
     pub volume: Vec<T>,
-    /// State of the constitutive law.
+    /// State of the constitutive law: one of each particle, or as many numbers as an
+    /// [`AnyLaw`](crate::law::AnyLaw) remembers.
     pub state: Vec<S>,
     /// Data of the second phase.
     pub phase: Vec<P>,
@@ -89,11 +90,12 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
         self.mass[p] / self.volume[p]
     }
 
-    /// Those of the given numbers, in that order.
-    pub(crate) fn picked(&self, numbers: &[usize]) -> Self {
+    /// Those of the given numbers, in that order; their states take so many numbers each.
+    pub(crate) fn picked(&self, numbers: &[usize], numbers_each: usize) -> Self {
         fn pick<A: Copy>(values: &[A], numbers: &[usize]) -> Vec<A> {
             numbers.iter().map(|&p| values[p]).collect()
         }
+        let state_of = |p: usize| &self.state[p * numbers_each..(p + 1) * numbers_each];
         Self {
             initial_position: pick(&self.initial_position, numbers),
             position: pick(&self.position, numbers),
@@ -102,19 +104,20 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
             stress: pick(&self.stress, numbers),
             mass: pick(&self.mass, numbers),
             volume: pick(&self.volume, numbers),
-            state: pick(&self.state, numbers),
+            state: numbers.iter().flat_map(|&p| state_of(p)).copied().collect(),
             phase: pick(&self.phase, numbers),
         }
     }
 
-    /// What moves and deforms of each particle.
-    pub(crate) fn movable(&mut self) -> Movables<'_, T, D, S, P> {
+    /// What moves and deforms of each particle; their states take so many numbers each.
+    pub(crate) fn movable(&mut self, numbers_each: usize) -> Movables<'_, T, D, S, P> {
         Movables {
             position: &mut self.position,
             displacement: &mut self.displacement,
             stress: &mut self.stress,
             volume: &mut self.volume,
             state: &mut self.state,
+            numbers_each,
             phase: &mut self.phase,
         }
     }
@@ -150,18 +153,23 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
     /// If there is no particle, an array's length differs, a number is not finite, or a mass or volume is
     /// not positive.
     pub fn validate(&self) -> Result<(), SetupError> {
+        self.validate_with(1)
+    }
+
+    /// The same of particles whose states take so many numbers each.
+    pub(crate) fn validate_with(&self, numbers_each: usize) -> Result<(), SetupError> {
         if self.is_empty() {
             return Err(SetupError::NoParticles);
         }
-        self.validate_lengths()?;
+        self.validate_lengths(numbers_each)?;
         for p in 0..self.len() {
             self.validate_particle(p)?;
         }
         Ok(())
     }
 
-    fn validate_lengths(&self) -> Result<(), SetupError> {
-        let expected = self.len();
+    fn validate_lengths(&self, numbers_each: usize) -> Result<(), SetupError> {
+        let count = self.len();
         let lengths = [
             ("initial_position", self.initial_position.len()),
             ("displacement", self.displacement.len()),
@@ -169,11 +177,13 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
             ("stress", self.stress.len()),
             ("mass", self.mass.len()),
             ("volume", self.volume.len()),
-            ("state", self.state.len()),
             ("phase", self.phase.len()),
         ];
-        match lengths.into_iter().find(|&(_, found)| found != expected) {
-            Some((name, found)) => Err(SetupError::Lengths {
+        let lengths = lengths.map(|(name, found)| (name, found, count));
+        let states = ("state", self.state.len(), count * numbers_each);
+        let mut lengths = lengths.into_iter().chain([states]);
+        match lengths.find(|&(_, found, expected)| found != expected) {
+            Some((name, found, expected)) => Err(SetupError::Lengths {
                 name,
                 found,
                 expected,

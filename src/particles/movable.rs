@@ -10,18 +10,10 @@ pub(crate) struct Movables<'a, T, const D: usize, S, P> {
     pub(super) displacement: &'a mut [SVector<T, D>],
     pub(super) stress: &'a mut [SMatrix<T, D, D>],
     pub(super) volume: &'a mut [T],
+    /// So many numbers for each.
     pub(super) state: &'a mut [S],
+    pub(super) numbers_each: usize,
     pub(super) phase: &'a mut [P],
-}
-
-/// What moves and deforms of one particle.
-pub(crate) struct Movable<'a, T, const D: usize, S, P> {
-    pub(crate) position: &'a mut SVector<T, D>,
-    pub(crate) displacement: &'a mut SVector<T, D>,
-    pub(crate) stress: &'a mut SMatrix<T, D, D>,
-    pub(crate) volume: &'a mut T,
-    pub(crate) state: &'a mut S,
-    pub(crate) phase: &'a mut P,
 }
 
 /// What deforms of particles.
@@ -32,31 +24,17 @@ pub(crate) struct Material<'a, T, const D: usize, S, P> {
     pub(crate) phase: &'a mut [P],
 }
 
-impl<'a, T, const D: usize, S, P> Movables<'a, T, D, S, P> {
-    /// One after the other.
-    #[inline(always)]
-    pub(crate) fn each(self) -> impl Iterator<Item = Movable<'a, T, D, S, P>> {
-        let places = self.position.iter_mut().zip(self.displacement);
-        let bodies = self.stress.iter_mut().zip(self.volume);
-        let others = self.state.iter_mut().zip(self.phase);
-        places.zip(bodies).zip(others).map(
-            |(((position, displacement), (stress, volume)), (state, phase))| Movable {
-                position,
-                displacement,
-                stress,
-                volume,
-                state,
-                phase,
-            },
-        )
-    }
-}
-
 impl<T, const D: usize, S, P> Movables<'_, T, D, S, P> {
     /// Where they are, and how far they have come since the start.
     #[inline(always)]
     pub(crate) fn places(&mut self) -> (&mut [SVector<T, D>], &mut [SVector<T, D>]) {
         (self.position, self.displacement)
+    }
+
+    /// The same, and the data of the second phase.
+    #[inline(always)]
+    pub(crate) fn places_and_phase(&mut self) -> (&mut [SVector<T, D>], &mut [SVector<T, D>], &mut [P]) {
+        (self.position, self.displacement, self.phase)
     }
 
     /// What `count` of them are made of, from index `first` on.
@@ -66,7 +44,7 @@ impl<T, const D: usize, S, P> Movables<'_, T, D, S, P> {
         Material {
             stress: &mut self.stress[these.clone()],
             volume: &mut self.volume[these.clone()],
-            state: &mut self.state[these.clone()],
+            state: &mut self.state[first * self.numbers_each..][..count * self.numbers_each],
             phase: &mut self.phase[these],
         }
     }
@@ -83,14 +61,16 @@ impl<T: Send, const D: usize, S: Send, P: Send> Sliced for Movables<'_, T, D, S,
         let (displacement, later_displacement) = self.displacement.split_at_mut(middle);
         let (stress, later_stress) = self.stress.split_at_mut(middle);
         let (volume, later_volume) = self.volume.split_at_mut(middle);
-        let (state, later_state) = self.state.split_at_mut(middle);
+        let (state, later_state) = self.state.split_at_mut(middle * self.numbers_each);
         let (phase, later_phase) = self.phase.split_at_mut(middle);
+        let numbers_each = self.numbers_each;
         let first = Self {
             position,
             displacement,
             stress,
             volume,
             state,
+            numbers_each,
             phase,
         };
         let rest = Self {
@@ -99,6 +79,7 @@ impl<T: Send, const D: usize, S: Send, P: Send> Sliced for Movables<'_, T, D, S,
             stress: later_stress,
             volume: later_volume,
             state: later_state,
+            numbers_each,
             phase: later_phase,
         };
         (first, rest)

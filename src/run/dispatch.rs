@@ -8,7 +8,7 @@ use super::space::InSpace;
 use crate::basis::BasisFamily;
 use crate::error::{GridError, SetupError};
 use crate::grid::Grid;
-use crate::law::ConstitutiveLaw;
+use crate::law::{AnyLaw, LawSweep};
 use crate::method::{KnownIn, MethodVisitor, ReconstructionKind};
 use crate::particles::Particles;
 use crate::phase::{OnePhase, Phase, PoreLiquid, TwoPhase};
@@ -53,12 +53,11 @@ where
         Ok(Self { scene, initial })
     }
 
-    /// The stepper once scalar and law are types.
-    pub(super) fn with_law<T, L>(self, law: L) -> Built<D>
+    /// The stepper once the scalar is a type and the law known.
+    pub(super) fn with_law<T>(self, law: AnyLaw<T, D>) -> Built<D>
     where
-        T: Scalar,
-        L: ConstitutiveLaw<T, D> + Clone + 'static,
-        L::State: Record<T>,
+        T: Scalar + Record<T> + Default,
+        AnyLaw<T, D>: LawSweep<T, D, Number = T>,
     {
         let method = self.scene.method.method();
         let built = method.dispatch(WithLaw { start: self, law });
@@ -67,16 +66,15 @@ where
 }
 
 /// Builds the stepper once basis and reconstruction are types.
-struct WithLaw<'a, L, const D: usize> {
+struct WithLaw<'a, T, const D: usize> {
     start: Start<'a, D>,
-    law: L,
+    law: AnyLaw<T, D>,
 }
 
-impl<T, L, const D: usize> MethodVisitor<T, D> for WithLaw<'_, L, D>
+impl<T, const D: usize> MethodVisitor<T, D> for WithLaw<'_, T, D>
 where
-    T: Scalar,
-    L: ConstitutiveLaw<T, D> + Clone + 'static,
-    L::State: Record<T>,
+    T: Scalar + Record<T> + Default,
+    AnyLaw<T, D>: LawSweep<T, D, Number = T>,
 {
     type Output = Built<D>;
 
@@ -101,9 +99,9 @@ where
         match start.scene.material.phases {
             Phases::One { .. } => rest.stepper(basis, reconstruction, OnePhase, particles.into_cast()),
             // Known at compile time: no stepper is built for what scenes refuse.
-            Phases::Two(_) if const { one_phase_only::<T, D, R, L>() } => {
-                Err(SetupError::OnePhaseOnly.into())
-            }
+            Phases::Two(_) if const { one_phase_only::<T, D, R>() } => Err(SetupError::OnePhaseOnly.into()),
+            // Two phases in the plane are verified with laws that remember nothing.
+            Phases::Two(_) if D > 1 && rest.law.remembers() => Err(SetupError::OnePhaseOnly.into()),
             Phases::Two(soil) => {
                 let mut particles = particles.into_cast();
                 particles.phase = liquid.into_iter().map(cast_liquid).collect();
@@ -114,26 +112,25 @@ where
     }
 }
 
-/// Whether there is no scene of two phases: relaxed TLS knows one only beyond one axis; in the plane, where each stepper takes seconds
-/// to compile, laws with a history are left to callers that name the types, and so is everything in space.
-const fn one_phase_only<T, const D: usize, R, L>() -> bool
+/// Whether there is no scene of two phases: relaxed TLS knows one phase only beyond one axis, and in space, where each
+/// stepper takes seconds to compile, two phases are left to callers that name the types.
+const fn one_phase_only<T, const D: usize, R>() -> bool
 where
     T: Scalar,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
 {
-    D > 2 || D == 2 && (R::PARTICLE_MATRIX || size_of::<L::State>() > 0)
+    D > 2 || D == 2 && R::PARTICLE_MATRIX
 }
 
 /// What a stepper needs besides basis, reconstruction, phase and particles.
-struct Rest<'a, L> {
+struct Rest<'a, T, const D: usize> {
     scene: &'a Scene,
-    law: L,
+    law: AnyLaw<T, D>,
     surface: Vec<SurfacePoint<f64>>,
     first_particles: Vec<usize>,
 }
 
-impl<L> Rest<'_, L> {
+impl<T, const D: usize> Rest<'_, T, D> {
     /// An error of the initial stress with the body whose particle it is about.
     fn of_body(&self, error: SetupError) -> RunError {
         match error {
@@ -155,22 +152,23 @@ impl<L> Rest<'_, L> {
         }
     }
 
-    fn stepper<T, B, R, P, const D: usize>(
+    fn stepper<B, R, P>(
         self,
         basis: B,
         mut reconstruction: R,
         phase: P,
-        mut particles: Particles<T, D, L::State, P::Particle>,
+        particles: Particles<T, D, (), P::Particle>,
     ) -> Built<D>
     where
-        T: Scalar,
+        T: Scalar + Record<T> + Default,
+        AnyLaw<T, D>: LawSweep<T, D, Number = T>,
         B: BasisFamily<T, D> + 'static,
         R: Reconstruction<T, D> + Clone + 'static,
-        L: ConstitutiveLaw<T, D> + Clone + 'static,
-        L::State: Record<T>,
         P: Phase<T, D> + Clone + 'static,
         P::Particle: Record<T>,
     {
+        let states = self.law.at_rest(particles.len());
+        let mut particles = particles.with_states(states);
         reconstruction.lend_virtual_points(self.scene.method.virtual_points);
         if self.scene.bodies.iter().any(|body| body.stress.is_some()) {
             let started = particles.start_under_stress(&self.law, |_, _| None);

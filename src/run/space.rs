@@ -4,20 +4,19 @@ use nalgebra::SVector;
 
 use super::dispatch::{Built, Start};
 use super::error::RunError;
-use super::history_law::HistoryLaw;
 use super::norms::Exact;
-use super::rate_law::{RateLaw, UniaxialRateLaw};
 use super::reference::{field_reference, solution};
 use super::schedule::Schedule;
 use super::state::{self, InitialState, Values, by_expressions};
 use crate::error::SetupError;
 use crate::grid::Grid;
 use crate::law::{
-    ConeMatch, DruckerPrager, Hencky, Hill, LinearElastic, Logarithmic, Moduli, NeoHookean, NewtonianFluid,
+    AnyLaw, ConeMatch, DruckerPrager, Hencky, Hill, LinearElastic, Logarithmic, Moduli, NeoHookean, NewtonianFluid,
     StVenantKirchhoff, Strength, VonMises,
 };
 use crate::particles::Particles;
 use crate::reference::FieldReference;
+use crate::record::Record;
 use crate::scalar::Scalar;
 use crate::scene::{Body, Law, ScalarKind, Scene, SpaceLaw};
 
@@ -57,8 +56,8 @@ impl InSpace<1> for Scene {
     fn build(&self, dt: f64) -> Built<1> {
         let start = Start::new(self, dt)?;
         match self.method.scalar {
-            ScalarKind::F64 => uniaxial::<f64>(start),
-            ScalarKind::F32 => uniaxial::<f32>(start),
+            ScalarKind::F64 => start.with_law(uniaxial::<f64>(self.material.law)?),
+            ScalarKind::F32 => start.with_law(uniaxial::<f32>(self.material.law)?),
         }
     }
 
@@ -83,79 +82,78 @@ impl InSpace<1> for Scene {
     }
 }
 
-fn uniaxial<T: Scalar>(start: Start<'_, 1>) -> Built<1> {
-    let law = start.scene.material.law;
+/// A law of one axis.
+fn uniaxial<T: Scalar + Record<T>>(law: Law) -> Result<AnyLaw<T, 1>, RunError> {
     let moduli = Moduli::uniaxial(T::lit(law.youngs_modulus()))?;
-    match law {
-        Law::LinearElastic { .. } => start.with_law(UniaxialRateLaw::LinearElastic(LinearElastic { moduli })),
-        Law::Hill { .. } => start.with_law(UniaxialRateLaw::Hill(Hill { moduli })),
-        Law::Logarithmic { .. } => start.with_law(UniaxialRateLaw::Logarithmic(Logarithmic { moduli })),
-        Law::NeoHookean { .. } => start.with_law(NeoHookean { moduli }),
-        Law::InSpace(law) => Err(RunError::NoSuchLaw {
-            law: law.name(),
-            dimension: 1,
-        }),
-    }
+    Ok(match law {
+        Law::LinearElastic { .. } => AnyLaw::new(LinearElastic { moduli }),
+        Law::Hill { .. } => AnyLaw::new(Hill { moduli }),
+        Law::Logarithmic { .. } => AnyLaw::new(Logarithmic { moduli }),
+        Law::NeoHookean { .. } => AnyLaw::new(NeoHookean { moduli }),
+        Law::InSpace(law) => {
+            return Err(RunError::NoSuchLaw {
+                law: law.name(),
+                dimension: 1,
+            });
+        }
+    })
 }
 
-/// A law with or without a history.
-enum AnyLaw {
-    Rate(RateLaw<f64>),
-    History(HistoryLaw<f64>),
-}
-
-fn law_in_space(law: Law) -> Result<AnyLaw, SetupError> {
+/// A law of two or three axes.
+fn law_in_space<const D: usize>(law: Law) -> Result<AnyLaw<f64, D>, SetupError> {
     let moduli = Moduli::from_young;
-    Ok(AnyLaw::History(match law {
+    Ok(match law {
         Law::LinearElastic {
             youngs_modulus,
             poissons_ratio,
         } => {
             let moduli = moduli(youngs_modulus, poissons_ratio)?;
-            return Ok(AnyLaw::Rate(RateLaw::LinearElastic(LinearElastic { moduli })));
+            AnyLaw::new(LinearElastic { moduli })
         }
         Law::Hill {
             youngs_modulus,
             poissons_ratio,
         } => {
             let moduli = moduli(youngs_modulus, poissons_ratio)?;
-            return Ok(AnyLaw::Rate(RateLaw::Hill(Hill { moduli })));
+            AnyLaw::new(Hill { moduli })
         }
         Law::NeoHookean {
             youngs_modulus,
             poissons_ratio,
-        } => HistoryLaw::NeoHookean(NeoHookean {
-            moduli: moduli(youngs_modulus, poissons_ratio)?,
-        }),
+        } => {
+            let moduli = moduli(youngs_modulus, poissons_ratio)?;
+            AnyLaw::new(NeoHookean { moduli })
+        }
         Law::Logarithmic {
             youngs_modulus,
             poissons_ratio,
-        } => HistoryLaw::Hencky(Hencky {
-            moduli: moduli(youngs_modulus, poissons_ratio)?,
-        }),
+        } => {
+            let moduli = moduli(youngs_modulus, poissons_ratio)?;
+            AnyLaw::new(Hencky { moduli })
+        }
         Law::InSpace(law) => in_space_only(law)?,
-    }))
+    })
 }
 
-fn in_space_only(law: SpaceLaw) -> Result<HistoryLaw<f64>, SetupError> {
+fn in_space_only<const D: usize>(law: SpaceLaw) -> Result<AnyLaw<f64, D>, SetupError> {
     let moduli = Moduli::from_young;
     Ok(match law {
         SpaceLaw::StVenantKirchhoff {
             youngs_modulus,
             poissons_ratio,
-        } => HistoryLaw::StVenantKirchhoff(StVenantKirchhoff {
-            moduli: moduli(youngs_modulus, poissons_ratio)?,
-        }),
+        } => {
+            let moduli = moduli(youngs_modulus, poissons_ratio)?;
+            AnyLaw::new(StVenantKirchhoff { moduli })
+        }
         SpaceLaw::VonMises {
             youngs_modulus,
             poissons_ratio,
             yield_stress,
             hardening,
-        } => HistoryLaw::VonMises(VonMises::new(
-            moduli(youngs_modulus, poissons_ratio)?,
-            yield_stress,
-            hardening,
-        )?),
+        } => {
+            let moduli = moduli(youngs_modulus, poissons_ratio)?;
+            AnyLaw::new(VonMises::new(moduli, yield_stress, hardening)?)
+        }
         SpaceLaw::DruckerPrager {
             youngs_modulus,
             poissons_ratio,
@@ -169,13 +167,13 @@ fn in_space_only(law: SpaceLaw) -> Result<HistoryLaw<f64>, SetupError> {
                 dilation_angle: dilation_angle.to_radians(),
             };
             let moduli = moduli(youngs_modulus, poissons_ratio)?;
-            HistoryLaw::DruckerPrager(DruckerPrager::new(moduli, &strength, ConeMatch::PlaneStrain)?)
+            AnyLaw::new(DruckerPrager::new(moduli, &strength, ConeMatch::PlaneStrain)?)
         }
         SpaceLaw::NewtonianFluid {
             bulk_modulus,
             gamma,
             viscosity,
-        } => HistoryLaw::NewtonianFluid(NewtonianFluid::new(bulk_modulus, gamma, viscosity)?),
+        } => AnyLaw::new(NewtonianFluid::new(bulk_modulus, gamma, viscosity)?),
     })
 }
 
@@ -184,10 +182,7 @@ macro_rules! beyond_one_axis {
         impl InSpace<$dimension> for Scene {
             fn build(&self, dt: f64) -> Built<$dimension> {
                 let start = Start::new(self, dt)?;
-                match law_in_space(self.material.law)? {
-                    AnyLaw::Rate(law) => start.with_law::<f64, _>(law),
-                    AnyLaw::History(law) => start.with_law::<f64, _>(law),
-                }
+                start.with_law(law_in_space::<$dimension>(self.material.law)?)
             }
 
             fn initial_state<'a>(

@@ -4,7 +4,7 @@ use super::matrix::Unknown;
 use super::{FaceCondition, Forcing, PoreCondition, Stepper};
 use crate::basis::BasisFamily;
 use crate::grid::Face;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -15,7 +15,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Turns forces into accelerations; a DOF that no particle reaches has none.

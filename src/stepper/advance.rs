@@ -5,34 +5,33 @@ use nalgebra::{SMatrix, SVector};
 use super::Stepper;
 use super::deform::{Motion, Outcome, advance_by_blocks};
 use super::lanes::{self, Pass};
-use super::spans::{Fault, Flaw};
+use super::spans::Fault;
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::grid::{Cell, Grid};
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
-use crate::particles::{Movable, Movables};
+use crate::particles::Movables;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::tensor::determinant;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Moves and deforms every particle and looks its new cell up.
     #[inline(never)]
     pub(super) fn advance(&mut self, dt: T) -> Result<(), StepError> {
         let (basis, grid, law, phase) = (&self.basis, &self.grid, &self.law, &self.phase);
-        let velocity = &self.dofs.velocity[..];
+        let (velocity, both) = (&self.dofs.velocity[..], &self.motion[..]);
         let parallel = worth_sharing::<D>(self.particles.len(), PARTICLES);
         let work = (
-            self.particles.movable(),
+            self.particles.movable(law.numbers()),
             self.bins.cells_mut(),
             PerSpan(&mut self.spans.moved),
             PerSpan(&mut self.spans.bounds),
@@ -48,7 +47,9 @@ where
                     law,
                     phase,
                 };
-                let outcome = if const { lanes::apply::<T, D, B>() } {
+                let outcome = if const { P::FLOWS } {
+                    advance_with_liquid(basis, grid, &motion, both, first, particles, cells)
+                } else if const { lanes::apply::<T, D, B>() } {
                     Pass::new(basis, grid).advance(&motion, first, particles, cells)
                 } else {
                     advance_one_by_one(basis, grid, &motion, first, particles, cells)
@@ -87,13 +88,13 @@ fn advance_one_by_one<T, const D: usize, B, L, P>(
     grid: &Grid<T, D>,
     motion: &Motion<'_, T, D, L, P>,
     first: usize,
-    particles: Movables<'_, T, D, L::State, P::Particle>,
+    particles: Movables<'_, T, D, L::Number, P::Particle>,
     cells: &mut [Cell<D>],
 ) -> Outcome<T>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     let (velocity, dt) = (motion.velocity, motion.dt);
@@ -122,33 +123,53 @@ where
     )
 }
 
-impl<T: Scalar, const D: usize, S: Copy, Q> Movable<'_, T, D, S, Q> {
-    /// Moves the particle by `path` and deforms it by `increment` within `dt`; the error is a volume that is no longer a positive number, or a stress
-    /// that the law does not know.
-    #[inline(always)]
-    pub(super) fn advance<L: ConstitutiveLaw<T, D, State = S>>(
-        &mut self,
-        law: &L,
-        dt: T,
-        path: &SVector<T, D>,
-        increment: &SMatrix<T, D, D>,
-    ) -> Result<(), Flaw<T>> {
-        *self.position += path;
-        *self.displacement += path;
-        law.update_over(dt, increment, self.stress, self.state);
-        if !law.knows(self.stress, self.state) {
-            return Err(Flaw::Stress(self.stress[(0, 0)]));
-        }
-        if law.large_strain() {
-            let volume = *self.volume * determinant(&(SMatrix::identity() + increment));
-            // Also refuses a volume that is not a number, or infinite.
-            if !(volume > T::zero() && (volume * T::zero()).is_zero()) {
-                return Err(Flaw::Volume(volume));
-            }
-            *self.volume = volume;
-        }
-        Ok(())
-    }
+/// The same where a liquid flows: particles move with the solid, and the pressure follows the velocities of `both`.
+#[inline(always)]
+fn advance_with_liquid<T, const D: usize, B, L, P>(
+    basis: &B,
+    grid: &Grid<T, D>,
+    motion: &Motion<'_, T, D, L, P>,
+    both: &[[SVector<T, D>; 2]],
+    first: usize,
+    particles: Movables<'_, T, D, L::Number, P::Particle>,
+    cells: &mut [Cell<D>],
+) -> Outcome<T>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+{
+    let dt = motion.dt;
+    advance_by_blocks(
+        motion,
+        first,
+        particles,
+        cells,
+        #[inline(always)]
+        |p, block, particles, cells, outcome| {
+            let (positions, displacements, data) = particles.places_and_phase();
+            let (x, cell) = (&mut positions[p], &mut cells[p]);
+            let mut v = SVector::zeros();
+            let mut gradient = SMatrix::<T, D, D>::zeros();
+            let mut liquid_gradient = SMatrix::<T, D, D>::zeros();
+            basis.for_each(grid, cell, x, |i, phi, grad_phi| {
+                let [solid, liquid] = &both[i];
+                v += solid * phi;
+                gradient += solid * grad_phi.transpose();
+                liquid_gradient += liquid * grad_phi.transpose();
+            });
+            let (path, increment) = (v * dt, gradient * dt);
+            motion
+                .phase
+                .update_with_flow(&increment, &(liquid_gradient * dt), &mut data[p]);
+            *x += path;
+            displacements[p] += path;
+            block.push_one(increment);
+            outcome.bound(grid.linear(cell));
+            outcome.settle(grid, p, cell, x);
+        },
+    )
 }
 
 #[cfg(test)]

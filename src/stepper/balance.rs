@@ -6,7 +6,7 @@ use super::acceleration::Walls;
 use super::diagnostics::Sums;
 use super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -48,7 +48,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Sums the particles' momentum before the first step; later it is known from the step before.

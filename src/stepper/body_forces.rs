@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use super::Stepper;
 use crate::basis::BasisFamily;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -14,7 +14,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Sets the force per mass (N/kg) of every particle, a function of where it was at the start, beside the

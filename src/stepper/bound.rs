@@ -26,7 +26,7 @@ use super::spans::share;
 use super::{CriticalStep, FaceCondition, Forcing, Mechanism, Stepper};
 use crate::basis::BasisFamily;
 use crate::grid::Face;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, many_threads};
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
@@ -37,7 +37,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Bound (1/m2) of the largest eigenvalue of the scheme's inverse mass times stiffness for waves of 1 m/s, with the particles
@@ -161,7 +161,7 @@ where
             let density = particles.mass[p] / particles.volume[p];
             let wave = self
                 .law
-                .wave_speed(density, &particles.stress[p], &particles.state[p]);
+                .wave_speed(density, &particles.stress[p], self.law.of(&particles.state, p));
             let step = T::lit(2.0) / (wave * stiffness.sqrt());
             CriticalStep {
                 step,

@@ -7,7 +7,7 @@ use super::liquid::Coupled;
 use super::{FaceCondition, Forcing, Setup, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Face};
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, each_span, many_threads};
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::{Reconstruction, Stored};
@@ -51,7 +51,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D> + Clone,
-    L: ConstitutiveLaw<T, D> + Clone,
+    L: LawSweep<T, D> + Clone,
     P: Phase<T, D> + Clone,
 {
     /// Largest step (s) at which the linearised scheme does not grow, for the particles where they are.
@@ -69,6 +69,8 @@ where
     }
 
     /// [`Stepper::critical_step`] without a copy; the stepper is used up.
+    // Out of line, as all that is asked once in a run: a stepper is compiled for every method.
+    #[inline(never)]
     pub fn into_critical_step(mut self, forcing: &Forcing<T, D>) -> Option<CriticalStep<T>> {
         if P::FLOWS {
             let geometry = self.eigenvalue_of_unit_density(forcing)?;
@@ -144,13 +146,14 @@ where
             law: self.law.clone(),
             phase: self.phase.clone(),
             velocity_mass: self.velocity_mass,
-            particles: self.particles.picked(&numbers),
+            particles: self.particles.picked(&numbers, self.law.numbers()),
             surface,
         };
         Self::new(setup).ok()
     }
 
     /// Largest eigenvalue for unit density and modulus; velocities and DOFs are used up.
+    #[inline(never)]
     fn eigenvalue_of_unit_density(&mut self, forcing: &Forcing<T, D>) -> Option<T> {
         let unit_density = self.particles.volume.clone();
         let mass = std::mem::replace(&mut self.particles.mass, unit_density);
@@ -160,6 +163,7 @@ where
     }
 
     /// Largest eigenvalue of the map, `None` if it is nothing to a wave of the given `speed`; velocities and DOFs are used up.
+    #[inline(never)]
     fn largest_eigenvalue(&mut self, forcing: &Forcing<T, D>, speed: T) -> Option<T> {
         let across = speed / self.grid.cell_size().min();
         let least = across * across * T::lit(ROUND_OFF);
@@ -215,8 +219,9 @@ where
         let mut rates = vec![SMatrix::zeros(); self.particles.len()];
         let parallel = rates.len() > PARTICLES && many_threads();
         each_span(parallel, PARTICLES, &mut rates[..], &|first, rates: &mut [_]| {
+            let mut state = Vec::with_capacity(self.law.numbers());
             for (p, rate) in (first..).zip(rates) {
-                *rate = self.stress_rate(p);
+                *rate = self.stress_rate(p, &mut state);
             }
         });
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
@@ -236,8 +241,8 @@ where
         eigenvalue.is_finite().then_some(eigenvalue)
     }
 
-    /// Change of a particle's total stress under the DOF velocities in one second.
-    fn stress_rate(&self, p: usize) -> SMatrix<T, D, D> {
+    /// Change of a particle's total stress under the DOF velocities in one second; `state` is room for a state.
+    fn stress_rate(&self, p: usize, state: &mut Vec<L::Number>) -> SMatrix<T, D, D> {
         let particles = &self.particles;
         let mut gradient = SMatrix::<T, D, D>::zeros();
         let (cell, x) = (self.bins.cell_of(p), &particles.position[p]);
@@ -247,8 +252,10 @@ where
         if P::FLOWS {
             return symmetric(&gradient);
         }
-        let (mut stress, mut state) = (particles.stress[p], particles.state[p]);
-        self.law.update(&gradient, &mut stress, &mut state);
+        let mut stress = particles.stress[p];
+        state.clear();
+        state.extend_from_slice(self.law.of(&particles.state, p));
+        self.law.update(&gradient, &mut stress, state);
         if !P::COUPLED {
             return stress - particles.stress[p];
         }
@@ -264,7 +271,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Largest speed (m/s) of a wave through the solid.
@@ -274,7 +281,7 @@ where
             .map(|p| {
                 let density = particles.mass[p] / particles.volume[p];
                 self.law
-                    .wave_speed(density, &particles.stress[p], &particles.state[p])
+                    .wave_speed(density, &particles.stress[p], self.law.of(&particles.state, p))
             })
             .fold(T::zero(), T::max)
     }
@@ -286,7 +293,7 @@ where
         let density = mass / volume;
         let speed = self
             .law
-            .wave_speed(density, &particles.stress[p], &particles.state[p]);
+            .wave_speed(density, &particles.stress[p], self.law.of(&particles.state, p));
         Coupled {
             mass: [phase.liquid_mass(volume) / volume, density],
             drag: phase.porosity() * phase.drag(mass, volume) / volume,

@@ -9,7 +9,7 @@ use super::spans::{Fault, Flaw, Moved};
 use super::window;
 use crate::grid::{Cell, Grid};
 use crate::lanes::{Lanes, MOST_LANES};
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::particles::{Material, Movables, settle};
 use crate::phase::Phase;
 use crate::scalar::Scalar;
@@ -130,19 +130,19 @@ pub(super) fn with_number([low, high]: [u32; 2], number: usize) -> [u32; 2] {
 pub(super) fn advance_by_blocks<T, const D: usize, L, P>(
     motion: &Motion<'_, T, D, L, P>,
     first: usize,
-    mut particles: Movables<'_, T, D, L::State, P::Particle>,
+    mut particles: Movables<'_, T, D, L::Number, P::Particle>,
     cells: &mut [Cell<D>],
     mut shift: impl FnMut(
         usize,
         &mut Block<T, D>,
-        &mut Movables<'_, T, D, L::State, P::Particle>,
+        &mut Movables<'_, T, D, L::Number, P::Particle>,
         &mut [Cell<D>],
         &mut Outcome<T>,
     ),
 ) -> Outcome<T>
 where
     T: Scalar,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     let mut outcome = Outcome {
@@ -174,55 +174,31 @@ where
     outcome
 }
 
-/// Deforms particles; returns the first one whose volume is no longer a positive number, or whose stress the law does not know.
+/// Deforms particles; returns the first one whose volume is no longer a positive number, whose stress the law does
+/// not know or whose liquid has no pressure any more.
 #[inline(always)]
-fn deform<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>, P: Phase<T, D>>(
+fn deform<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
     motion: &Motion<'_, T, D, L, P>,
     increments: &[SMatrix<T, D, D>],
-    material: Material<'_, T, D, L::State, P::Particle>,
+    material: Material<'_, T, D, L::Number, P::Particle>,
 ) -> Option<(usize, Flaw<T>)> {
     let (law, phase) = (motion.law, motion.phase);
-    if P::COUPLED {
+    if P::COUPLED && !P::FLOWS {
         for (increment, data) in increments.iter().zip(&mut *material.phase) {
             phase.update(increment, data);
         }
     }
-    carry(law, motion.dt, increments, material.stress, material.state);
-    let known = are_known(law, material.stress, material.state);
+    law.carry(motion.dt, increments, material.stress, material.state);
+    let known = law.are_known(material.stress, material.state);
     let sound = !law.large_strain() || stretch(increments, material.volume);
-    if known && sound {
+    let finite = !P::FLOWS || have_pressures(phase, material.phase);
+    if known && sound && finite {
         return None;
     }
-    first_flaw(law, &material)
+    first_flaw(law, phase, &material)
 }
 
-// Functions of their own, because a compiler knows of what a function is given, and not of what a structure holds, that slices are
-// apart from each other and from the law: it need not read the law's constants anew after each stress.
-
-/// Carries stresses and states over the increments.
-#[inline(never)]
-fn carry<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
-    law: &L,
-    dt: T,
-    increments: &[SMatrix<T, D, D>],
-    stresses: &mut [SMatrix<T, D, D>],
-    states: &mut [L::State],
-) {
-    for ((increment, stress), state) in increments.iter().zip(stresses).zip(states) {
-        law.update_over(dt, increment, stress, state);
-    }
-}
-
-/// Whether the law has a meaning at all stresses.
-#[inline(never)]
-fn are_known<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
-    law: &L,
-    stresses: &[SMatrix<T, D, D>],
-    states: &[L::State],
-) -> bool {
-    let bodies = stresses.iter().zip(states);
-    bodies.fold(true, |known, (stress, state)| known & law.knows(stress, state))
-}
+// A function of its own, for the reason that the loops of a law are.
 
 /// Lets volumes follow the increments; whether all are still sound.
 #[inline(never)]
@@ -234,6 +210,11 @@ fn stretch<T: Scalar, const D: usize>(increments: &[SMatrix<T, D, D>], volumes: 
     })
 }
 
+/// Whether the liquid of all has a pressure that is a number.
+fn have_pressures<T: Scalar, const D: usize, P: Phase<T, D>>(phase: &P, data: &[P::Particle]) -> bool {
+    data.iter().all(|data| phase.liquid(data).pressure.is_finite())
+}
+
 /// Whether a volume is a positive number, and finite.
 #[inline(always)]
 fn is_sound<T: Scalar>(volume: T) -> bool {
@@ -243,17 +224,23 @@ fn is_sound<T: Scalar>(volume: T) -> bool {
 /// What is wrong with the first particle with which something is.
 #[cold]
 #[inline(never)]
-fn first_flaw<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>, Q>(
+fn first_flaw<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
     law: &L,
-    material: &Material<'_, T, D, L::State, Q>,
+    phase: &P,
+    material: &Material<'_, T, D, L::Number, P::Particle>,
 ) -> Option<(usize, Flaw<T>)> {
-    let bodies = material
-        .stress
-        .iter()
-        .zip(&*material.state)
-        .zip(&*material.volume);
-    bodies.enumerate().find_map(|(k, ((stress, state), &volume))| {
-        if !law.knows(stress, state) {
+    let bodies = material.stress.iter().zip(&*material.volume);
+    bodies.enumerate().find_map(|(k, (stress, &volume))| {
+        if P::FLOWS {
+            let pressure = material
+                .phase
+                .get(k)
+                .map_or_else(T::zero, |data| phase.liquid(data).pressure);
+            if !pressure.is_finite() {
+                return Some((k, Flaw::Pressure(pressure)));
+            }
+        }
+        if !law.knows(stress, law.of(material.state, k)) {
             return Some((k, Flaw::Stress(stress[(0, 0)])));
         }
         let unsound = law.large_strain() && !is_sound(volume);

@@ -6,7 +6,7 @@ use super::Stepper;
 use super::contact::WallAction;
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -232,7 +232,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Kinetic and strain energy of the particles as they are, the liquid's included: the kinetic one half a step earlier than the
@@ -257,7 +257,7 @@ where
     pub(super) fn strain_energy(&self) -> T {
         let particles = &self.particles;
         (0..particles.len()).fold(T::zero(), |sum, p| {
-            let mut density = self.law.energy_density(&particles.stress[p], &particles.state[p]);
+            let mut density = self.law.energy_density(&particles.stress[p], self.law.of(&particles.state, p));
             if P::FLOWS {
                 density += self.phase.liquid_energy_density(&particles.phase[p]);
             }

@@ -6,7 +6,7 @@ use super::{FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::grid::{Cell, Face, Grid, Side};
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -68,7 +68,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Refuses walls that the basis would let slip.

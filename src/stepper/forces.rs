@@ -13,7 +13,7 @@ use super::{FaceCondition, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::grid::Grid;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::parallel::{PerSpan, Windows, add_up, each_span};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Point, Reconstruction, Stored, Values};
@@ -30,7 +30,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Masses and forces of the DOFs.

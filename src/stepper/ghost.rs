@@ -4,7 +4,7 @@ use super::Stepper;
 use super::matrix::MassMatrix;
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::particles::{Bins, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Filling, Reconstruction};
@@ -19,7 +19,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Puts a penalty on the jumps across those faces between occupied cells at which one of them is not full, beyond one dimension.

@@ -10,7 +10,7 @@ use super::{Dofs, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
 use crate::grid::Grid;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::mass::{VelocityMass, banded_row};
 use crate::parallel::{Windows, add_up, each_span};
 use crate::phase::Phase;
@@ -22,7 +22,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Momentum and mass of the DOFs; returns their totals.

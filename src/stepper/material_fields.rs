@@ -2,7 +2,7 @@
 
 use super::Stepper;
 use crate::basis::BasisFamily;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -11,9 +11,9 @@ use crate::scalar::Scalar;
 /// array is empty where the law does not know it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MaterialFields {
-    /// Stress (Pa) along the axes that the grid does not have; see [`ConstitutiveLaw::off_plane_stress`].
+    /// Stress (Pa) along the axes that the grid does not have; see [`crate::law::ConstitutiveLaw::off_plane_stress`].
     pub off_plane_stress: Vec<f64>,
-    /// Accumulated plastic strain; see [`ConstitutiveLaw::plastic_strain`].
+    /// Accumulated plastic strain; see [`crate::law::ConstitutiveLaw::plastic_strain`].
     pub plastic_strain: Vec<f64>,
 }
 
@@ -22,7 +22,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// What the law knows of the particles besides their stress.
@@ -30,8 +30,8 @@ where
         let (law, particles) = (&self.law, &self.particles);
         MaterialFields {
             off_plane_stress: self
-                .in_first_order(|p| law.off_plane_stress(&particles.stress[p], &particles.state[p])),
-            plastic_strain: self.in_first_order(|p| law.plastic_strain(&particles.state[p])),
+                .in_first_order(|p| law.off_plane_stress(&particles.stress[p], law.of(&particles.state, p))),
+            plastic_strain: self.in_first_order(|p| law.plastic_strain(law.of(&particles.state, p))),
         }
     }
 

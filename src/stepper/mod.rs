@@ -59,7 +59,7 @@ use num_traits::Zero;
 use crate::basis::BasisFamily;
 use crate::error::{SetupError, StepError};
 use crate::grid::Grid;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::mass::VelocityMass;
 use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
 use crate::particles::{Bins, Outside, Particles};
@@ -73,7 +73,7 @@ use spans::Spans;
 
 /// All that a [`Stepper`] is made of.
 #[derive(Clone, Debug)]
-pub struct Setup<T, const D: usize, B, R, L: ConstitutiveLaw<T, D>, P: Phase<T, D>>
+pub struct Setup<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>>
 where
     T: Scalar,
 {
@@ -91,7 +91,7 @@ where
     /// [`crate::reconstruction::RelaxedTaylor`] constrains always.
     pub velocity_mass: VelocityMass,
     /// Particles in their initial state.
-    pub particles: Particles<T, D, L::State, P::Particle>,
+    pub particles: Particles<T, D, L::Number, P::Particle>,
     /// Particles at the surfaces that carry tractions or, with a liquid in the pores, pressures: there, every surface of
     /// a body that is not held. So too along one axis with any reconstruction but those by particle sums: fits end there.
     pub surface: Vec<SurfacePoint<T>>,
@@ -99,7 +99,7 @@ where
 
 /// Steps particles through time. See the [module](self) for the algorithm.
 #[derive(Clone, Debug)]
-pub struct Stepper<T, const D: usize, B, R, L: ConstitutiveLaw<T, D>, P: Phase<T, D>>
+pub struct Stepper<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>>
 where
     T: Scalar,
 {
@@ -108,7 +108,7 @@ where
     reconstruction: R,
     law: L,
     phase: P,
-    particles: Particles<T, D, L::State, P::Particle>,
+    particles: Particles<T, D, L::Number, P::Particle>,
     surface: Vec<SurfacePoint<T>>,
     bins: Bins<D>,
     order: Order,
@@ -156,7 +156,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Checks particles and phase and allocates all that steps will need.
@@ -181,7 +181,7 @@ where
             mut particles,
             surface,
         } = setup;
-        particles.validate()?;
+        particles.validate_with(law.numbers())?;
         phase.validate()?;
         refuse_unknown_stress(&law, &particles)?;
         if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {
@@ -218,7 +218,7 @@ where
         let sums_matrix = D > 1 && !R::AMOUNTS_AT_PARTICLES && velocity_mass != VelocityMass::Lumped;
         let surface_count = surface.len();
         let crossed_count = if R::RELAXES { grid.cell_count() } else { 0 };
-        let relaxed_count = if R::RELAXES && size_of::<L::State>() > 0 {
+        let relaxed_count = if R::RELAXES && law.remembers() {
             particles.len()
         } else {
             0
@@ -417,11 +417,7 @@ where
     fn drift(&mut self, dt: T) -> Result<(), StepError> {
         self.steps += 1;
         self.time += dt;
-        if P::FLOWS {
-            self.advance_both(dt)
-        } else {
-            self.advance(dt)
-        }
+        self.advance(dt)
     }
 
     /// Takes in where the particles are.
@@ -463,11 +459,11 @@ where
     /// Puts the particles in the order of their cells.
     #[inline(never)]
     fn restore_order(&mut self) {
-        let surface = &mut self.surface;
+        let (surface, numbers_each) = (&mut self.surface, self.law.numbers());
         let cells = self.bins.cells_mut();
         let moved = self
             .order
-            .restore(&self.grid, cells, &mut self.particles, |targets| {
+            .restore(&self.grid, cells, &mut self.particles, numbers_each, &mut |targets| {
                 for point in surface.iter_mut() {
                     point.particle = targets[point.particle] as usize;
                 }
@@ -519,7 +515,7 @@ where
     }
 
     /// The particles, in the order in which they are kept: see [`Stepper::numbers`].
-    pub fn particles(&self) -> &Particles<T, D, L::State, P::Particle> {
+    pub fn particles(&self) -> &Particles<T, D, L::Number, P::Particle> {
         &self.particles
     }
 
@@ -599,12 +595,12 @@ where
 }
 
 /// Refuses a particle whose stress has no meaning to the law.
-fn refuse_unknown_stress<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>, P>(
+fn refuse_unknown_stress<T: Scalar, const D: usize, L: LawSweep<T, D>, P>(
     law: &L,
-    particles: &Particles<T, D, L::State, P>,
+    particles: &Particles<T, D, L::Number, P>,
 ) -> Result<(), SetupError> {
-    let mut stresses = particles.stress.iter().zip(&particles.state);
-    match stresses.position(|(stress, state)| !law.knows(stress, state)) {
+    let mut stresses = particles.stress.iter().enumerate();
+    match stresses.position(|(p, stress)| !law.knows(stress, law.of(&particles.state, p))) {
         None => Ok(()),
         Some(particle) => Err(SetupError::Value {
             particle,

@@ -62,14 +62,16 @@ impl Order {
         !self.numbers.is_empty() && self.crossings * CHANGED >= self.numbers.len()
     }
 
-    /// Puts the particles in the order of their cells; those of a cell stay in the order in which they are. Returns whether any
-    /// has moved; if so, `moves` was told the place that each is at now.
+    /// Puts the particles in the order of their cells; those of a cell stay in the order in which they are, and their
+    /// states take so many numbers each. Returns whether any has moved; if so, `moves` was told the place that each is at now.
+    #[inline(never)]
     pub(super) fn restore<T: Scalar, const D: usize, S: Copy, P: Copy>(
         &mut self,
         grid: &Grid<T, D>,
         cells: &mut [Cell<D>],
         particles: &mut Particles<T, D, S, P>,
-        mut moves: impl FnMut(&[u32]),
+        numbers_each: usize,
+        moves: &mut dyn FnMut(&[u32]),
     ) -> bool {
         self.crossings = 0;
         if cells.windows(2).all(|pair| !before(grid, &pair[1], &pair[0])) {
@@ -92,7 +94,7 @@ impl Order {
         moves(&self.targets);
         let numbers = &mut self.numbers;
         permute(&mut self.targets, |a, b| {
-            particles.swap(a, b);
+            particles.swap(a, b, numbers_each);
             cells.swap(a, b);
             numbers.swap(a, b);
         });
@@ -138,8 +140,8 @@ fn before<T: Scalar, const D: usize>(grid: &Grid<T, D>, a: &Cell<D>, b: &Cell<D>
 }
 
 impl<T: Scalar, const D: usize, S: Copy, P: Copy> Particles<T, D, S, P> {
-    /// Exchanges two particles.
-    pub(super) fn swap(&mut self, a: usize, b: usize) {
+    /// Exchanges two particles, whose states take so many numbers each.
+    pub(super) fn swap(&mut self, a: usize, b: usize, numbers_each: usize) {
         let vectors: [&mut Vec<SVector<T, D>>; 4] = [
             &mut self.initial_position,
             &mut self.position,
@@ -151,13 +153,16 @@ impl<T: Scalar, const D: usize, S: Copy, P: Copy> Particles<T, D, S, P> {
         stress.swap(a, b);
         self.mass.swap(a, b);
         self.volume.swap(a, b);
-        self.state.swap(a, b);
+        for k in 0..numbers_each {
+            self.state.swap(a * numbers_each + k, b * numbers_each + k);
+        }
         self.phase.swap(a, b);
     }
 
-    /// Puts particles with the given `numbers` in the order of the numbers, which are used up.
+    /// Puts particles with the given `numbers` and a state each in the order of the numbers, which are used up.
+    #[inline(never)]
     pub(super) fn put_back(&mut self, numbers: Option<Vec<u32>>) {
-        permute(&mut numbers.unwrap_or_default(), |a, b| self.swap(a, b));
+        permute(&mut numbers.unwrap_or_default(), |a, b| self.swap(a, b, 1));
     }
 }
 
@@ -177,14 +182,14 @@ mod tests {
         let mut order = Order::new(&grid, bins.cells());
         assert!(order.is_lost());
         let cells = bins.cells_mut();
-        let moved = order.restore(&grid, cells, &mut particles, |targets| {
+        let moved = order.restore(&grid, cells, &mut particles, 1, &mut |targets| {
             assert_eq!(targets, [4, 0, 2, 1, 3]);
         });
         assert!(moved && !order.is_lost());
         assert_eq!(order.numbers(), Some(&[1, 3, 2, 4, 0][..]));
         assert_eq!(order.number(4), 0);
         assert_eq!(cells, [[0, 0], [0, 0], [2, 0], [0, 1], [2, 1]]);
-        assert!(!order.restore(&grid, cells, &mut particles, |_| ()));
+        assert!(!order.restore(&grid, cells, &mut particles, 1, &mut |_| ()));
         particles.put_back(order.into_numbers());
         assert_eq!(particles.position, points.iter().map(|p| p.0).collect::<Vec<_>>());
     }

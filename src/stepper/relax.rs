@@ -4,7 +4,7 @@ use nalgebra::SMatrix;
 
 use super::Stepper;
 use crate::basis::BasisFamily;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::parallel::{CELLS, each_span, many_threads};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Crossed, Reconstruction};
@@ -19,7 +19,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing has used it
@@ -34,7 +34,7 @@ where
             volumes: &particles.volume,
             cuts: &self.cuts,
         };
-        if size_of::<L::State>() == 0 {
+        if !self.law.remembers() {
             self.reconstruction
                 .relax(&cloud, None, crossed, &mut particles.stress);
         } else {
@@ -45,7 +45,7 @@ where
         let mass = Some(&particles.mass[..]);
         self.reconstruction
             .relax(&cloud, mass, crossed, &mut particles.velocity);
-        if size_of::<L::State>() > 0 {
+        if self.law.remembers() {
             self.strain_to_relaxed();
         }
     }
@@ -58,7 +58,7 @@ where
         for (p, relaxed) in self.relaxed.iter().enumerate() {
             let (stress, state, volume) = (
                 &mut particles.stress[p],
-                &mut particles.state[p],
+                law.of_mut(&mut particles.state, p),
                 &mut particles.volume[p],
             );
             let change = relaxed - *stress;
@@ -131,7 +131,7 @@ where
         let density = particles.mass[p] / volume;
         let speed = self
             .law
-            .wave_speed(density, &particles.stress[p], &particles.state[p]);
+            .wave_speed(density, &particles.stress[p], self.law.of(&particles.state, p));
         if !P::FLOWS {
             return speed;
         }

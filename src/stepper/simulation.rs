@@ -11,7 +11,7 @@ use super::{
 use crate::basis::BasisFamily;
 use crate::error::{RestoreError, StepError};
 use crate::grid::Face;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::particles::Particles;
 use crate::phase::{Phase, PoreLiquid};
 use crate::reconstruction::Reconstruction;
@@ -110,8 +110,8 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D> + Clone,
-    L: ConstitutiveLaw<T, D> + Clone,
-    L::State: Record<T>,
+    L: LawSweep<T, D> + Clone,
+    L::Number: Record<T>,
     P: Phase<T, D> + Clone,
     P::Particle: Record<T>,
 {

@@ -73,6 +73,8 @@ pub(super) enum Flaw<T> {
     Volume(T),
     /// The law has no meaning at this stress.
     Stress(T),
+    /// The pressure of the liquid in its pores is no number any more.
+    Pressure(T),
 }
 
 impl<T: Scalar> Flaw<T> {
@@ -84,6 +86,12 @@ impl<T: Scalar> Flaw<T> {
                 particle,
                 name: "volume",
                 value: volume.primal(),
+            },
+            Self::Pressure(pressure) => StepError::Invalid {
+                step,
+                particle,
+                name: "pore pressure",
+                value: pressure.primal(),
             },
             Self::Stress(stress) => StepError::Stress {
                 step,

@@ -11,7 +11,7 @@ use super::matrix::Unknown;
 use super::spans::{Spans, share};
 use super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::mass::VelocityMass;
 use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, worth_sharing};
 use crate::phase::Phase;
@@ -23,7 +23,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Velocities of the particles, and of the DOFs from them.

@@ -7,7 +7,7 @@
 use super::Stepper;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid, Window};
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -43,7 +43,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Lays the window anew around the particles, with DOFs to it.

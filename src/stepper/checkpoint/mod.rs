@@ -26,7 +26,7 @@ use super::{Conservation, Diagnostics, Stepper};
 use crate::basis::BasisFamily;
 use crate::error::RestoreError;
 use crate::grid::Window;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::record::Record;
@@ -38,8 +38,8 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
-    L::State: Record<T>,
+    L: LawSweep<T, D>,
+    L::Number: Record<T>,
     P: Phase<T, D>,
     P::Particle: Record<T>,
 {
@@ -87,7 +87,7 @@ where
         let mut momentum = SVector::<T, D>::zeros();
         from.numbers(momentum.as_mut_slice())?;
         self.balance.momentum = known.then_some(momentum);
-        self.particles.restore(&mut from)?;
+        self.particles.restore(&mut from, self.law.numbers())?;
         let count = self.particles.len();
         for (index, point) in self.surface.iter_mut().enumerate() {
             point.particle = from.count_below(count, "the particle of surface", index)?;

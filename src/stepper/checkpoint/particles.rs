@@ -27,7 +27,8 @@ where
         out.records(&self.phase)
     }
 
-    pub(super) fn restore(&mut self, from: &mut In<'_>) -> Result<(), RestoreError> {
+    /// Their states take so many numbers each.
+    pub(super) fn restore(&mut self, from: &mut In<'_>, numbers_each: usize) -> Result<(), RestoreError> {
         from.records("the initial position of particle", &mut self.initial_position)?;
         from.records("the position of particle", &mut self.position)?;
         from.records("the displacement of particle", &mut self.displacement)?;
@@ -37,7 +38,7 @@ where
         from.numbers(&mut self.volume)?;
         from.records("the state of particle", &mut self.state)?;
         from.records("the second phase of particle", &mut self.phase)?;
-        Ok(self.validate()?)
+        Ok(self.validate_with(numbers_each)?)
     }
 }
 

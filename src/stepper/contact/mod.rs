@@ -31,7 +31,7 @@ use nalgebra::SVector;
 use super::acceleration::Walls;
 use super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -186,7 +186,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Lets the walls act on particles and DOFs, whose velocities are those that the step would have without them.

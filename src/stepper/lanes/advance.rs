@@ -6,7 +6,7 @@ use super::{Group, Pass, with_lanes_for};
 use crate::basis::BasisFamily;
 use crate::grid::Cell;
 use crate::lanes::{Lanes, SideBySide};
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::particles::Movables;
 use crate::phase::Phase;
 use crate::scalar::Scalar;
@@ -14,22 +14,22 @@ use crate::stepper::deform::{Motion, NO_BOUNDS, Outcome, advance_by_blocks, with
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
     /// Moves and deforms the particles, the first of which has the number `first`.
-    pub(in super::super) fn advance<L: ConstitutiveLaw<T, D>, P: Phase<T, D>>(
+    pub(in super::super) fn advance<L: LawSweep<T, D>, P: Phase<T, D>>(
         &self,
         motion: &Motion<'_, T, D, L, P>,
         first: usize,
-        particles: Movables<'_, T, D, L::State, P::Particle>,
+        particles: Movables<'_, T, D, L::Number, P::Particle>,
         cells: &mut [Cell<D>],
     ) -> Outcome<T> {
         with_lanes_for!(T, cells, self.advance_in[_, _](motion, first, particles, cells))
     }
 
     #[inline(never)]
-    fn advance_in<V: Lanes<T, N>, const N: usize, L: ConstitutiveLaw<T, D>, P: Phase<T, D>>(
+    fn advance_in<V: Lanes<T, N>, const N: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
         &self,
         motion: &Motion<'_, T, D, L, P>,
         first: usize,
-        particles: Movables<'_, T, D, L::State, P::Particle>,
+        particles: Movables<'_, T, D, L::Number, P::Particle>,
         cells: &mut [Cell<D>],
     ) -> Outcome<T> {
         advance_by_blocks(

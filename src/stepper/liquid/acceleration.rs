@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::super::acceleration::Walls;
 use super::super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -15,7 +15,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Turns the forces of both phases into accelerations; a DOF that no particle reaches has none.

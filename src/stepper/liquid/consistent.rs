@@ -13,7 +13,7 @@ use super::joint::Joint;
 use super::seal::Components;
 use crate::basis::BasisFamily;
 use crate::field::Pair;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -23,7 +23,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// The matrices of both masses and of the drag.

@@ -6,7 +6,7 @@ use nalgebra::SVector;
 use num_traits::Zero;
 
 use super::super::{Dofs, Stepper};
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::scalar::Scalar;
 
@@ -63,7 +63,7 @@ pub(super) type Motion<T, const D: usize> = [SVector<T, D>; 2];
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
 where
     T: Scalar,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Hands the sums to the DOFs of the two phases.

@@ -9,7 +9,7 @@ use super::dof::Sums;
 use super::surface::EvenLoad;
 use crate::basis::BasisFamily;
 use crate::field::Pair;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::{Point, Reconstruction};
 use crate::scalar::Scalar;
@@ -19,7 +19,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Masses, drag and forces of both phases, and their velocities at the step's start.

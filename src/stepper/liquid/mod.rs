@@ -12,7 +12,6 @@
 //! same two balances with these (`joint`), in one dimension so far.
 
 mod acceleration;
-mod advance;
 mod consistent;
 mod critical;
 mod dof;

@@ -4,7 +4,7 @@ use super::super::Stepper;
 use super::joint::Joint;
 use crate::basis::BasisFamily;
 use crate::field::Pair;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::{Phase, PoreLiquid};
 use crate::reconstruction::{Cloud, Reconstruction};
 use crate::scalar::Scalar;
@@ -14,7 +14,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// Effective stress and pressure after the forces are assembled from them, the velocities of both phases, each weighted with
@@ -56,7 +56,7 @@ where
             phase.set_liquid(PoreLiquid { velocity, pressure }, data);
         }
         let stresses = joint.state.iter().map(|state| state.0);
-        if size_of::<L::State>() == 0 {
+        if !self.law.remembers() {
             particles
                 .stress
                 .iter_mut()

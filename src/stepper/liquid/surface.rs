@@ -8,7 +8,7 @@ use super::seal::{Answer, Place, Seal};
 use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::grid::Side;
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -65,7 +65,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// The load of one surface, as an even state of the whole body.

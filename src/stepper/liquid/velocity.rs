@@ -10,7 +10,7 @@ use super::super::velocity::{divide, sum};
 use super::super::{Dofs, Forcing, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::field::{MassMomentum, Pair};
-use crate::law::ConstitutiveLaw;
+use crate::law::LawSweep;
 use crate::mass::VelocityMass;
 use crate::particles::Particles;
 use crate::phase::Phase;
@@ -22,7 +22,7 @@ where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
-    L: ConstitutiveLaw<T, D>,
+    L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
     /// DOF velocities of both phases at the step's start. The masses of the mapping serve again after the update: nothing has
