@@ -45,12 +45,7 @@ impl<T: Scalar, const D: usize> AnyLaw<T, D> {
     /// States of `count` undeformed particles, for [`Particles::state`](crate::particles::Particles::state).
     pub fn at_rest(&self, count: usize) -> Vec<T> {
         let state = self.0.at_rest();
-        state
-            .iter()
-            .copied()
-            .cycle()
-            .take(count * state.len())
-            .collect()
+        state.iter().copied().cycle().take(count * state.len()).collect()
     }
 }
 

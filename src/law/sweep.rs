@@ -51,16 +51,10 @@ pub trait LawSweep<T: Scalar, const D: usize>: Sealed<T, D> + Send + Sync {
     fn knows(&self, stress: &SMatrix<T, D, D>, state: &[Self::Number]) -> bool;
 
     /// See [`ConstitutiveLaw::update`].
-    fn update(
-        &self,
-        increment: &SMatrix<T, D, D>,
-        stress: &mut SMatrix<T, D, D>,
-        state: &mut [Self::Number],
-    );
+    fn update(&self, increment: &SMatrix<T, D, D>, stress: &mut SMatrix<T, D, D>, state: &mut [Self::Number]);
 
     /// See [`ConstitutiveLaw::start`]; whether there is such a state.
     fn start(&self, stress: &SMatrix<T, D, D>, off_plane: Option<T>, state: &mut [Self::Number]) -> bool;
-
 
     /// See [`ConstitutiveLaw::strain_for`].
     fn strain_for(

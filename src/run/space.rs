@@ -11,12 +11,12 @@ use super::state::{self, InitialState, Values, by_expressions};
 use crate::error::SetupError;
 use crate::grid::Grid;
 use crate::law::{
-    AnyLaw, ConeMatch, DruckerPrager, Hencky, Hill, LinearElastic, Logarithmic, Moduli, NeoHookean, NewtonianFluid,
-    StVenantKirchhoff, Strength, VonMises,
+    AnyLaw, ConeMatch, DruckerPrager, Hencky, Hill, LinearElastic, Logarithmic, Moduli, NeoHookean,
+    NewtonianFluid, StVenantKirchhoff, Strength, VonMises,
 };
 use crate::particles::Particles;
-use crate::reference::FieldReference;
 use crate::record::Record;
+use crate::reference::FieldReference;
 use crate::scalar::Scalar;
 use crate::scene::{Body, Law, ScalarKind, Scene, SpaceLaw};
 

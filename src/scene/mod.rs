@@ -130,7 +130,8 @@ impl Scene {
         self
     }
 
-    /// Fraction of the largest stable step that an automatic step takes: as told, or that of the method.
+    /// Fraction of the largest stable step, or for plain MPM of a lower bound of it, that an automatic step takes:
+    /// as told, or that of the method ([`Method::default_safety`]).
     pub fn safety(&self) -> f64 {
         match self.time.step {
             StepSize::Auto { safety: Some(safety) } => safety,

@@ -22,7 +22,7 @@ pub struct GridSpec {
 pub enum StepSize {
     /// Always the same (s).
     Fixed(f64),
-    /// A fraction of the largest stable step, renewed as the run goes.
+    /// A fraction of the largest stable step, or for plain MPM of a lower bound of it, renewed as the run goes.
     Auto {
         /// The fraction, above 0 and at most 1; that of the method unless told ([`Scene::safety`](super::Scene::safety)).
         safety: Option<f64>,
@@ -59,11 +59,12 @@ pub struct Method {
     pub basis: Basis,
     /// From particle data to integrals.
     pub reconstruction: ReconstructionKind,
-    /// Sub-points of each particle's domain, 1 to 128; more than one with dual domain and Shepard only.
+    /// Sub-points of each particle's domain, 1 to 128; more than one with dual domain and Shepard along one axis
+    /// only.
     pub subpoints: u8,
     /// Whether cells whose particles do not determine their fit borrow virtual points; Taylor in one dimension only.
     pub virtual_points: bool,
-    /// Mass behind the DOFs' velocities.
+    /// Mass behind the DOFs' velocities; lumped for Shepard, constrained for relaxed Taylor.
     pub velocity_mass: VelocityMass,
     /// Floating-point type.
     pub scalar: ScalarKind,
@@ -183,7 +184,7 @@ pub enum SpaceLaw {
         bulk_modulus: f64,
         /// Exponent of the equation of state, at least 1; default 7.
         gamma: f64,
-        /// Dynamic viscosity (Pa s), not negative.
+        /// Dynamic viscosity (Pa s), not negative; default 0.
         viscosity: f64,
     },
 }
@@ -360,7 +361,8 @@ pub enum BoundaryKind {
         /// Velocity of the wall (m/s), in `t`; one expression per axis. At rest unless told.
         velocity: Option<Vec<Expression>>,
     },
-    /// The grid's face moves with this velocity (m/s), in `t`; one expression per axis.
+    /// Material at the grid's face is held at this velocity (m/s), in `t`; one expression per axis. The face
+    /// stays where it is.
     Velocity(Vec<Expression>),
     /// The bodies' surface that looks towards the face bears this force per area (Pa), in `t`; one expression
     /// per axis.
@@ -385,14 +387,15 @@ pub struct Boundary {
     pub face: Face,
     /// What holds.
     pub kind: BoundaryKind,
-    /// Where a traction acts: on particles of the surface at which this is positive at the start, in `x`, `y`, `z`. Without it on all.
+    /// Where a traction acts: on particles of the surface at which this is positive at the start, in `x`, `y`,
+    /// `z`. Without it on all.
     pub inside: Option<Expression>,
     /// What the liquid meets.
     pub pores: PoreBoundary,
 }
 
 impl Boundary {
-    /// Whether the grid's face is held: fixed or told a velocity.
+    /// Whether the grid's face is held: fixed, a roller or told a velocity.
     pub fn is_held(&self) -> bool {
         matches!(
             self.kind,

@@ -257,7 +257,9 @@ where
     pub(super) fn strain_energy(&self) -> T {
         let particles = &self.particles;
         (0..particles.len()).fold(T::zero(), |sum, p| {
-            let mut density = self.law.energy_density(&particles.stress[p], self.law.of(&particles.state, p));
+            let mut density = self
+                .law
+                .energy_density(&particles.stress[p], self.law.of(&particles.state, p));
             if P::FLOWS {
                 density += self.phase.liquid_energy_density(&particles.phase[p]);
             }

@@ -461,13 +461,17 @@ where
     fn restore_order(&mut self) {
         let (surface, numbers_each) = (&mut self.surface, self.law.numbers());
         let cells = self.bins.cells_mut();
-        let moved = self
-            .order
-            .restore(&self.grid, cells, &mut self.particles, numbers_each, &mut |targets| {
+        let moved = self.order.restore(
+            &self.grid,
+            cells,
+            &mut self.particles,
+            numbers_each,
+            &mut |targets| {
                 for point in surface.iter_mut() {
                     point.particle = targets[point.particle] as usize;
                 }
-            });
+            },
+        );
         if moved {
             self.bins.note_crossings(1);
             self.spans.forget();

@@ -55,7 +55,11 @@ fn summary(output: &Output) -> serde_json::Value {
     for key in ["wall_seconds", "particle_steps_per_second"] {
         assert!(entries.remove(key).is_some());
     }
-    for name in entries.remove("removed").iter().flat_map(|names| names.as_array().unwrap()) {
+    for name in entries
+        .remove("removed")
+        .iter()
+        .flat_map(|names| names.as_array().unwrap())
+    {
         let name = name.as_str().unwrap();
         assert!(name.starts_with('.') && name.ends_with(".tmp"), "{name} removed");
     }
