@@ -7,6 +7,7 @@ mod command;
 mod conservation;
 mod convergence;
 mod examples;
+mod golden;
 mod hard_cases;
 mod identities;
 mod laws;
