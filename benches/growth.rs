@@ -13,7 +13,7 @@
 use std::error::Error;
 use std::f64::consts::PI;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
@@ -22,11 +22,11 @@ use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
 use materialpoint::mass::VelocityMass;
 use materialpoint::method::{Basis, Method, MethodVisitor, ReconstructionKind};
-use materialpoint::output::{Curve, CurvePoint, Folder, draw_study, fill_in};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Reconstruction;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use materialpoint_command::output::{Curve, CurvePoint, Folder, draw_study, fill_in};
 use nalgebra::vector;
 
 /// Tells a child process what to measure: method, particles per cell, particles.
@@ -354,6 +354,11 @@ fn most(arguments: &[String]) -> Option<usize> {
     arguments.iter().rev().find_map(number).map(|most| most as usize)
 }
 
+/// The repository; benches are run in the folder of their package.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if let Some((first, rest)) = arguments.split_first()
@@ -368,9 +373,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tables = format!("{}\n{}", table_of_time(&all), table_of_memory(&all));
     println!("\n{tables}");
     if benched && asked.is_none() {
-        let pictures = Folder::create(Path::new("docs/pictures"))?;
+        let pictures = Folder::create(&root().join("docs/pictures"))?;
         pictures.write("growth.svg", &picture(&all))?;
-        let page = Path::new("docs/speed-and-error.md");
+        let page = &root().join("docs/speed-and-error.md");
         let text = format!(
             "![Time of a particle's step against the number of particles](pictures/growth.svg)\n\n{tables}"
         );

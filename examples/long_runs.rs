@@ -11,11 +11,11 @@ use std::path::Path;
 use materialpoint::error::StepError;
 use materialpoint::grid::{Face, Side};
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::output::{Folder, Line, LineAxis, LineCaptions, LinePanel, draw_lines, fill_in};
 use materialpoint::reference::{EntropyBar, Hill, Reference};
-use materialpoint::run::simulation;
-use materialpoint::scene::Scene;
 use materialpoint::stepper::{FaceCondition, Forcing};
+use materialpoint_command::output::{Folder, Line, LineAxis, LineCaptions, LinePanel, draw_lines, fill_in};
+use materialpoint_command::run::simulation;
+use materialpoint_command::scene::Scene;
 
 /// Size of a step (s), as in the scene.
 const STEP: f64 = 1e-4;

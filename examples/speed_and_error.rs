@@ -8,9 +8,9 @@ use std::fs;
 use std::path::Path;
 
 use materialpoint::method::Method;
-use materialpoint::output::{Folder, fill_in};
-use materialpoint::scene::Scene;
-use materialpoint::study::{Plan, front_in_markdown, picture, study};
+use materialpoint_command::output::{Folder, fill_in};
+use materialpoint_command::scene::Scene;
+use materialpoint_command::study::{Plan, front_in_markdown, picture, study};
 
 /// A compiled-in scene, the numbers of cells, and the stress errors that a user may ask for.
 pub struct Case {

@@ -10,10 +10,10 @@ use std::error::Error;
 use std::path::Path;
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::output::{Folder, Line, LineAxis, LineCaptions, LinePanel, draw_lines};
-use materialpoint::run::{critical_step, simulation};
-use materialpoint::scene::Scene;
 use materialpoint::stepper::Forcing;
+use materialpoint_command::output::{Folder, Line, LineAxis, LineCaptions, LinePanel, draw_lines};
+use materialpoint_command::run::{critical_step, simulation};
+use materialpoint_command::scene::Scene;
 
 /// How often the energy may be the initial one before a run counts as growing.
 pub const GROWTH: f64 = 1e4;

@@ -12,9 +12,9 @@ use std::path::Path;
 
 use materialpoint::field::Pair;
 use materialpoint::grid::Grid;
-use materialpoint::output::{Folder, Line, LineAxis, LineCaptions, LinePanel, draw_lines};
 use materialpoint::particles::Bins;
 use materialpoint::reconstruction::{Cloud, CubicSpline, Reconstruction, Taylor};
+use materialpoint_command::output::{Folder, Line, LineAxis, LineCaptions, LinePanel, draw_lines};
 use nalgebra::vector;
 
 /// The eleven places, in units of pi.

@@ -117,8 +117,8 @@ pub enum SetupError {
     },
 }
 
-/// Components of a stress in words.
-pub(crate) fn named(stress: &[(String, f64)]) -> String {
+/// Components of a stress (Pa) in words, as messages have them.
+pub fn named(stress: &[(String, f64)]) -> String {
     let each = stress
         .iter()
         .map(|(name, value)| format!("{name} = {value:.4e} Pa"));

@@ -55,9 +55,9 @@
 //! * a law of your own: [`law`]; a basis: [`basis`]; check them with [`testing`];
 //! * the algorithm: [`stepper`]; the fit: [`taylor`];
 //! * exact and converged solutions: [`mod@reference`];
-//! * scenes in TOML (feature `scene`): `scene`; running and comparing them: `run`, `study`; files: `output`.
+//! * scenes in TOML, runs and studies of them, files: the crate `materialpoint-command`, which is the command too.
 //!
-//! Features: `cli` (default) builds the command; `scene` the scenes without it; neither leaves the numerics alone.
+//! Feature `rayon` (default): threads, any number of which gives the bits of one.
 
 #![forbid(unsafe_code)]
 
@@ -81,12 +81,3 @@ pub mod stepper;
 pub mod taylor;
 pub mod tensor;
 pub mod testing;
-
-#[cfg(feature = "scene")]
-pub mod output;
-#[cfg(feature = "scene")]
-pub mod run;
-#[cfg(feature = "scene")]
-pub mod scene;
-#[cfg(feature = "scene")]
-pub mod study;

@@ -3,8 +3,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use materialpoint::run::run;
-use materialpoint::scene::{Body, Scene, StepSize};
+use materialpoint_command::run::run;
+use materialpoint_command::scene::{Body, Scene, StepSize};
 
 /// Most cells, and most particles if the bodies fill the grid: more would only be slow.
 const MOST: usize = 2000;

@@ -28,9 +28,9 @@ pub(super) fn hooke<T: Scalar, const D: usize>(moduli: &Moduli<T>, e: &SMatrix<T
     stress
 }
 
-/// The strain without parts off the plane that [`hooke`] gives this stress.
+/// The strain, without parts off the plane, to which Hooke's law gives this `stress` (Pa).
 #[inline]
-pub(crate) fn hooke_strain<T: Scalar, const D: usize>(
+pub fn hooke_strain<T: Scalar, const D: usize>(
     moduli: &Moduli<T>,
     stress: &SMatrix<T, D, D>,
 ) -> SMatrix<T, D, D> {

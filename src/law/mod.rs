@@ -21,9 +21,7 @@ pub use drucker_prager::{ConeMatch, DruckerPrager, DruckerPragerState, Strength}
 pub use elastic_stretch::ElasticStretch;
 pub use hencky::Hencky;
 pub use hill::Hill;
-pub use linear_elastic::LinearElastic;
-#[cfg(feature = "scene")]
-pub(crate) use linear_elastic::hooke_strain;
+pub use linear_elastic::{LinearElastic, hooke_strain};
 pub use logarithmic::Logarithmic;
 pub use moduli::Moduli;
 pub use neo_hookean::{DeformationGradient, NeoHookean};

@@ -30,10 +30,11 @@ impl<T: Scalar, const D: usize, S, P> Particles<T, D, S, P> {
     }
 }
 
-#[cfg(feature = "scene")]
 impl<T, const D: usize, S, P> Particles<T, D, S, P> {
-    /// The same particles with the states of a law.
-    pub(crate) fn with_states<S2>(self, state: Vec<S2>) -> Particles<T, D, S2, P> {
+    /// The same particles with the states of a law: one each, or those that
+    /// [`AnyLaw::at_rest`](crate::law::AnyLaw::at_rest) gives.
+    #[must_use]
+    pub fn with_states<S2>(self, state: Vec<S2>) -> Particles<T, D, S2, P> {
         Particles {
             initial_position: self.initial_position,
             position: self.position,

@@ -23,19 +23,15 @@ pub fn lattice<T: Scalar, const D: usize>(
 
 /// The lattice of [`lattice`], particle by particle.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lattice<T, const D: usize> {
+pub struct Lattice<T, const D: usize> {
     min: SVector<T, D>,
     extent: SVector<T, D>,
     counts: [usize; D],
 }
 
 impl<T: Scalar, const D: usize> Lattice<T, D> {
-    pub(crate) fn new(
-        grid: &Grid<T, D>,
-        min: &SVector<T, D>,
-        max: &SVector<T, D>,
-        per_cell: [usize; D],
-    ) -> Self {
+    /// Of the box from `min` to `max` (m), with so many particles a cell along each axis.
+    pub fn new(grid: &Grid<T, D>, min: &SVector<T, D>, max: &SVector<T, D>, per_cell: [usize; D]) -> Self {
         let extent = max - min;
         let counts = std::array::from_fn(|a| {
             let wanted = (extent[a] / grid.cell_size()[a]).primal() * per_cell[a] as f64;
@@ -49,23 +45,27 @@ impl<T: Scalar, const D: usize> Lattice<T, D> {
     }
 
     /// Number of particles.
-    pub(crate) fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.counts.iter().product()
     }
 
+    /// Whether there is no particle: never.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     /// Distance of neighbours along each axis (m).
-    #[cfg(any(feature = "scene", test))]
-    pub(crate) fn spacing(&self) -> SVector<T, D> {
+    pub fn spacing(&self) -> SVector<T, D> {
         SVector::from_fn(|a, _| self.extent[a] / T::count(self.counts[a]))
     }
 
     /// Volume of each particle.
-    pub(crate) fn volume(&self) -> T {
+    pub fn volume(&self) -> T {
         (0..D).fold(T::one(), |v, a| v * self.extent[a] / T::count(self.counts[a]))
     }
 
     /// Place of a particle along each axis.
-    pub(crate) fn place(&self, mut index: usize) -> [usize; D] {
+    pub fn place(&self, mut index: usize) -> [usize; D] {
         self.counts.map(|count| {
             let k = index % count;
             index /= count;
@@ -74,8 +74,7 @@ impl<T: Scalar, const D: usize> Lattice<T, D> {
     }
 
     /// The next particle along `axis`, upwards or downwards; `None` at the end of the box.
-    #[cfg(any(feature = "scene", test))]
-    pub(crate) fn neighbour(&self, index: usize, axis: usize, upwards: bool) -> Option<usize> {
+    pub fn neighbour(&self, index: usize, axis: usize, upwards: bool) -> Option<usize> {
         let stride: usize = self.counts.iter().take(axis).product();
         let count = self.counts.get(axis).copied()?;
         let place = index / stride % count;
@@ -86,7 +85,7 @@ impl<T: Scalar, const D: usize> Lattice<T, D> {
     }
 
     /// Position of a particle (m).
-    pub(crate) fn position(&self, index: usize) -> SVector<T, D> {
+    pub fn position(&self, index: usize) -> SVector<T, D> {
         let half = T::one() / T::lit(2.0);
         let place = self.place(index);
         SVector::from_fn(|a, _| {

@@ -9,9 +9,7 @@ mod start;
 
 pub(crate) use bins::settle;
 pub use bins::{Bins, Outside};
-#[cfg(feature = "scene")]
-pub(crate) use lattice::Lattice;
-pub use lattice::lattice;
+pub use lattice::{Lattice, lattice};
 pub(crate) use movable::{Material, Movables};
 
 use nalgebra::{SMatrix, SVector};
@@ -58,7 +56,7 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
     }
 
     /// The same from points that come one by one.
-    pub(crate) fn from_points(points: impl Iterator<Item = (SVector<T, D>, T)>, density: T) -> Self {
+    pub fn from_points(points: impl Iterator<Item = (SVector<T, D>, T)>, density: T) -> Self {
         let (position, volume): (Vec<_>, Vec<_>) = points.unzip();
         let n = position.len();
         Self {

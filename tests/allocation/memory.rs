@@ -5,9 +5,9 @@ use materialpoint::grid::{Face, Side};
 use materialpoint::mass::VelocityMass;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::phase::Drag;
-use materialpoint::run::{run, simulation, simulation_in};
-use materialpoint::scene::Scene;
 use materialpoint::stepper::{FaceCondition, Forcing, Simulation};
+use materialpoint_command::run::{run, simulation, simulation_in};
+use materialpoint_command::scene::Scene;
 
 use crate::two_phase::column::{AT_REST, Column, loaded, table_6};
 use crate::two_phase::sealed::SEALED_BOX;

@@ -10,9 +10,9 @@ use materialpoint::method::{Method, MethodVisitor, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, OnePhase};
 use materialpoint::reconstruction::Reconstruction;
-use materialpoint::run::simulation_in;
-use materialpoint::scene::Scene;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use materialpoint_command::run::simulation_in;
+use materialpoint_command::scene::Scene;
 use nalgebra::vector;
 
 use crate::two_phase::column::{AT_REST, Column, loaded, table_6};

@@ -3,8 +3,8 @@
 mod own_bases;
 
 use materialpoint::method::Method;
-use materialpoint::run::{Outcome, run};
-use materialpoint::scene::Scene;
+use materialpoint_command::run::{Outcome, run};
+use materialpoint_command::scene::Scene;
 
 const RULES: &str = r#"
 title = "wave"

@@ -3,8 +3,8 @@
 //! Parameters: a block of 0.4 m on the floor of its grid, with one or two slips a scene.
 //! Expected: the fragments below.
 
-use materialpoint::run::{RunError, run_in, warnings};
-use materialpoint::scene::{Scene, SceneError};
+use materialpoint_command::run::{RunError, run_in, warnings};
+use materialpoint_command::scene::{Scene, SceneError};
 
 use super::scene;
 

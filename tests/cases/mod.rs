@@ -7,8 +7,8 @@ mod frames;
 mod strength;
 mod weight;
 
-use materialpoint::run::{InSpace, Outcome, run_in};
-use materialpoint::scene::Scene;
+use materialpoint_command::run::{InSpace, Outcome, run_in};
+use materialpoint_command::scene::Scene;
 use nalgebra::SMatrix;
 
 use crate::space::scene;

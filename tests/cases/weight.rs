@@ -12,7 +12,7 @@
 //! 1e-13 of rho g H with linear functions, 1.3e-5 m and 1.5 % where the quadrature is not exact; without its
 //! stress it would settle 4.9 mm. The tip sinks as Timoshenko says within 3 %: measured 0.996, 1.018, 1.020.
 
-use materialpoint::run::{RunError, run_in};
+use materialpoint_command::run::{RunError, run_in};
 
 use super::{BASES, largest, root_mean_square, scene, solved_by};
 

@@ -4,7 +4,7 @@
 //! estimate the energy stays below twice the initial, at 1.05 of it the run blows up or leaves the grid. All methods, and sub-points.
 
 use super::*;
-use materialpoint::run::critical_step;
+use materialpoint_command::run::critical_step;
 
 fn scene(method: Method, step: f64) -> Scene {
     let set = [

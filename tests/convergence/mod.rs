@@ -11,8 +11,8 @@ mod small_bar;
 mod sub_points;
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::run::{Summary, run};
-use materialpoint::scene::Scene;
+use materialpoint_command::run::{Summary, run};
+use materialpoint_command::scene::Scene;
 
 pub const LINEAR: Basis = Basis::Linear;
 pub const DUAL_DOMAIN: Basis = Basis::DualDomain;

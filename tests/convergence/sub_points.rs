@@ -11,8 +11,8 @@ use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, OnePhase, Phase, TwoPhase};
 use materialpoint::reconstruction::{Reconstruction, Shepard, SubPoints};
-use materialpoint::run::RunError;
 use materialpoint::stepper::{FaceCondition, Forcing, PoreCondition, Setup, Stepper, SurfacePoint};
+use materialpoint_command::run::RunError;
 use nalgebra::vector;
 
 use super::*;

@@ -125,7 +125,7 @@ fn the_own_basis_conforms() {
 /// The page's program keeps the prose and fills the part between the markers; its picture is light enough for the repository.
 #[test]
 fn a_part_of_the_page_on_speed_and_error_is_written_anew() {
-    use materialpoint::output::Folder;
+    use materialpoint_command::output::Folder;
     use speed_and_error::{Care, Case, report};
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("speed-and-error");
     let case = Case {
@@ -161,11 +161,11 @@ fn a_part_of_the_page_on_speed_and_error_is_written_anew() {
 /// The page has a place for every case and for the growth of cost, and the pictures that it shows are there.
 #[test]
 fn the_page_on_speed_and_error_is_complete() {
-    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
     let page = std::fs::read_to_string(docs.join("speed-and-error.md")).unwrap();
     let names = speed_and_error::CASES.map(|case| case.scene);
     for name in names.into_iter().chain(["growth"]) {
-        materialpoint::output::fill_in(&page, name, "").unwrap();
+        materialpoint_command::output::fill_in(&page, name, "").unwrap();
     }
     let pictures: Vec<&str> = page
         .split("](pictures/")
@@ -187,7 +187,7 @@ fn a_part_of_the_page_on_long_runs_is_written_anew() {
     use long_runs::{Case, SMOOTH, Variant, report};
     use materialpoint::method::{Basis, ReconstructionKind};
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("long-runs");
-    let folder = materialpoint::output::Folder::create(&path).unwrap();
+    let folder = materialpoint_command::output::Folder::create(&path).unwrap();
     let case = Case {
         velocity: 0.8,
         cells: 20,
@@ -218,14 +218,14 @@ fn a_part_of_the_page_on_long_runs_is_written_anew() {
 /// The pages name only pictures that are there, none too heavy for the repository.
 #[test]
 fn the_pages_on_long_runs_and_on_stability_have_their_pictures() {
-    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
     for (page, parts, count) in [
         ("long-runs.md", &["smooth", "shocks"][..], 2),
         ("stability.md", &[], 4),
     ] {
         let page = std::fs::read_to_string(docs.join(page)).unwrap();
         for part in parts {
-            materialpoint::output::fill_in(&page, part, "").unwrap();
+            materialpoint_command::output::fill_in(&page, part, "").unwrap();
         }
         let rest = page.split("](pictures/").skip(1);
         let pictures: Vec<&str> = rest.filter_map(|rest| rest.split(')').next()).collect();

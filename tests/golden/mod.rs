@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use materialpoint::scene::Scene;
+use materialpoint_command::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Difference in the checksums of a column, relative to its norm, that round-off may make.
@@ -230,7 +230,7 @@ fn difference(found: &Outcome, recorded: &Outcome, tolerance: f64) -> Option<Str
 }
 
 fn file() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/runs.json")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/golden/runs.json")
 }
 
 fn outcomes() -> BTreeMap<String, Outcome> {

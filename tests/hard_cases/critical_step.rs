@@ -20,9 +20,9 @@
 //! it.
 
 use materialpoint::method::{Method, ReconstructionKind};
-use materialpoint::run::{critical_step, simulation};
-use materialpoint::scene::Scene;
 use materialpoint::stepper::Forcing;
+use materialpoint_command::run::{critical_step, simulation};
+use materialpoint_command::scene::Scene;
 
 use crate::examples::stability_map::{self, GROWTH, offset};
 

@@ -11,9 +11,9 @@ mod scene_text;
 
 use std::fs;
 
-use materialpoint::output::Folder;
-use materialpoint::run::{Outcome, RunError, critical_step, run};
-use materialpoint::scene::{ReconstructionKind, ScalarKind, Scene, StepSize};
+use materialpoint_command::output::Folder;
+use materialpoint_command::run::{Outcome, RunError, critical_step, run};
+use materialpoint_command::scene::{ReconstructionKind, ScalarKind, Scene, StepSize};
 use proptest::prelude::*;
 use proptest::test_runner::{TestCaseError, TestRunner};
 use scene_text::{MOST_STEPS, Text, scene_text};

@@ -15,10 +15,10 @@ use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::particles::Particles;
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor, Shepard, Taylor};
-use materialpoint::run::simulation;
 use materialpoint::scalar::Scalar;
-use materialpoint::scene::Scene;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use materialpoint_command::run::simulation;
+use materialpoint_command::scene::Scene;
 use nalgebra::vector;
 
 use super::double_double::DoubleDouble;

@@ -6,9 +6,9 @@
 //! `4 / h^2`. A sample of many particles is as stiff as the whole where the whole is alike.
 
 use materialpoint::method::{Method, ReconstructionKind};
-use materialpoint::run::{InSpace, simulation_in};
-use materialpoint::scene::Scene;
 use materialpoint::stepper::Forcing;
+use materialpoint_command::run::{InSpace, simulation_in};
+use materialpoint_command::scene::Scene;
 
 /// Of a body with so many axes: the particles per cell, the offset in cells, the jitter and the length of cells along all but the first axis.
 struct Layout {

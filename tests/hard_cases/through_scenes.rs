@@ -4,8 +4,8 @@
 //! the half step by which velocities lag. What moves as a whole is not strained.
 
 use materialpoint::particles::Particles;
-use materialpoint::run::{Summary, run, run_in};
-use materialpoint::scene::Scene;
+use materialpoint_command::run::{Summary, run, run_in};
+use materialpoint_command::scene::Scene;
 
 const BASES: [&str; 3] = ["linear", "dual-domain", "bspline"];
 

@@ -9,7 +9,7 @@ mod text;
 mod two_phase;
 mod values;
 
-use materialpoint::scene::Scene;
+use materialpoint_command::scene::Scene;
 
 /// Longest message, in characters: three lines of a terminal.
 const LONGEST: usize = 300;
@@ -190,13 +190,13 @@ fn scenes_in_the_plane() {
 
 #[test]
 fn the_scene_of_two_phases_is_good() {
-    use materialpoint::scene::{Initialise, Phases};
+    use materialpoint_command::scene::{Initialise, Phases};
     let scene = Scene::from_toml(two_phase::GOOD, &[]).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(scene.material.phases.count(), 2);
     assert!(matches!(scene.material.phases, Phases::Two(soil) if soil.permeability_exponent == 2.0));
     assert_eq!(scene.bodies[0].initialise, Initialise::Dofs);
     assert!(scene.boundaries.iter().all(|boundary| boundary.is_open()));
-    materialpoint::run::run(&scene, None, &mut |_| {}).unwrap();
+    materialpoint_command::run::run(&scene, None, &mut |_| {}).unwrap();
 }
 
 #[test]

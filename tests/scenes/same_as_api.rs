@@ -16,9 +16,9 @@ use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor};
 use materialpoint::record::Record;
-use materialpoint::run::{InSpace, RunError, run_in};
-use materialpoint::scene::Scene;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use materialpoint_command::run::{InSpace, RunError, run_in};
+use materialpoint_command::scene::Scene;
 use nalgebra::SVector;
 
 /// Steps, and their size (s): a power of two, so that no sum of them is rounded.

@@ -1,7 +1,7 @@
 //! Goal: what is surely not meant is said with key and value, and sensible scenes are left in peace.
 
-use materialpoint::run::{RunError, run_in, simulation_in, warnings};
-use materialpoint::scene::Scene;
+use materialpoint_command::run::{RunError, run_in, simulation_in, warnings};
+use materialpoint_command::scene::Scene;
 
 /// A block that stands on the floor of its grid between smooth walls.
 const BLOCK: &str = r#"

@@ -5,8 +5,8 @@
 //! Expected: no load, walls at rest: the energy never rises, but for what crossing cell edges gives, some per cent. While the tube
 //! is at rest `h / (c + |v|)` is the step of linear functions; where waves break c and |v| are greater and the step is less.
 
-use materialpoint::run::{Outcome, run_in};
-use materialpoint::scene::Scene;
+use materialpoint_command::run::{Outcome, run_in};
+use materialpoint_command::scene::Scene;
 
 use super::scene;
 
@@ -72,7 +72,7 @@ const BASES: [&str; 3] = ["linear", "dual-domain", "bspline"];
 
 fn run<const D: usize>(scene: &Scene) -> Outcome<D>
 where
-    Scene: materialpoint::run::InSpace<D>,
+    Scene: materialpoint_command::run::InSpace<D>,
 {
     run_in::<D>(scene, None, &mut |_| {}).unwrap()
 }

@@ -1,7 +1,7 @@
 //! Bodies in the plane: shapes, tables, files.
 
-use materialpoint::output::Folder;
-use materialpoint::run::{RunError, run, run_in};
+use materialpoint_command::output::Folder;
+use materialpoint_command::run::{RunError, run, run_in};
 
 use super::scene;
 

@@ -8,7 +8,7 @@
 use materialpoint::error::StepError;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::reference::Elastica;
-use materialpoint::scene::Scene;
+use materialpoint_command::scene::Scene;
 use nalgebra::{SMatrix, SVector};
 
 use super::scene;

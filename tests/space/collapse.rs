@@ -7,8 +7,8 @@
 //! keeps its height.
 
 use materialpoint::particles::Particles;
-use materialpoint::run::run_in;
-use materialpoint::scene::Scene;
+use materialpoint_command::run::run_in;
+use materialpoint_command::scene::Scene;
 
 use super::scene;
 

@@ -6,8 +6,8 @@
 //! 1.013 1.007, B-splines 1.024 1.011 1.005: first order, as the sides are where particles' volumes end.
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::scene::Scene;
 use materialpoint::stepper::Simulation;
+use materialpoint_command::scene::Scene;
 use nalgebra::{Matrix3, Vector3};
 
 use super::scene;

@@ -5,8 +5,8 @@
 //! 0.92 of the speed at which they met, the rest of their energy, 15 %, being vibration: elastic bodies that large do just that.
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::scene::Scene;
 use materialpoint::stepper::Simulation;
+use materialpoint_command::scene::Scene;
 use nalgebra::SVector;
 
 use super::scene;

@@ -6,8 +6,8 @@
 use std::path::{Path, PathBuf};
 
 use materialpoint::method::Method;
-use materialpoint::output::Folder;
-use materialpoint::run::run_in;
+use materialpoint_command::output::Folder;
+use materialpoint_command::run::run_in;
 use nalgebra::SVector;
 use vtkio::Vtk;
 use vtkio::model::{Attribute, DataSet, Piece};
@@ -209,7 +209,7 @@ body_force = ["cos(3*t)"]
     let error = |half: bool, step: f64| {
         let set = [format!("time.half_kick={half}"), format!("time.step={step:?}")];
         let set = set.each_ref().map(String::as_str);
-        let outcome = materialpoint::run::run(&scene(SPRING, &set), None, &mut |_| {}).unwrap();
+        let outcome = materialpoint_command::run::run(&scene(SPRING, &set), None, &mut |_| {}).unwrap();
         // Rigid: u = (1 - cos(3 t)) / 9.
         (outcome.particles.displacement[0][0] - (1.0 - 3_f64.cos()) / 9.0).abs()
     };

@@ -11,8 +11,8 @@
 
 use std::f64::consts::PI;
 
-use materialpoint::run::run_in;
-use materialpoint::scene::Scene;
+use materialpoint_command::run::run_in;
+use materialpoint_command::scene::Scene;
 
 use super::scene;
 

@@ -11,8 +11,8 @@
 mod series;
 
 use materialpoint::grid::{Face, Side};
-use materialpoint::run::simulation_in;
 use materialpoint::stepper::{FaceCondition, Forcing, PoreCondition};
+use materialpoint_command::run::simulation_in;
 use nalgebra::vector;
 
 use super::scene;

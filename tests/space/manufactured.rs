@@ -6,8 +6,8 @@
 //! relaxed .0083 .0075; mass and momentum at round-off.
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::run::{InSpace, Summary, run_in};
-use materialpoint::scene::Scene;
+use materialpoint_command::run::{InSpace, Summary, run_in};
+use materialpoint_command::scene::Scene;
 
 use super::scene;
 

@@ -22,7 +22,7 @@ mod walls;
 mod watch;
 mod window;
 
-use materialpoint::scene::Scene;
+use materialpoint_command::scene::Scene;
 
 /// A scene with overrides.
 #[track_caller]

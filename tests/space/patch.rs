@@ -8,8 +8,8 @@
 //! fields: its strain is exact too. Shepard's lumped mass and the given cell means of published TLS do not return them.
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::run::InSpace;
-use materialpoint::scene::Scene;
+use materialpoint_command::run::InSpace;
+use materialpoint_command::scene::Scene;
 use nalgebra::SMatrix;
 use proptest::prelude::*;
 

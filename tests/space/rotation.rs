@@ -7,7 +7,7 @@
 
 use materialpoint::error::StepError;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::scene::Scene;
+use materialpoint_command::scene::Scene;
 
 use super::scene;
 use super::watch::{momenta, watch};

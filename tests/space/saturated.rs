@@ -5,7 +5,7 @@
 //! Expected: pressure and effective stress of the line within 1 % (measured 0.65 % at most); with TLS on B-splines the pressure varies across
 //! by 19 % of its largest, because Gauss forces over lumped masses differ from wall to middle. Both phases keep their mass.
 
-use materialpoint::run::{run, run_in};
+use materialpoint_command::run::{run, run_in};
 
 use super::scene;
 

@@ -11,8 +11,8 @@ use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::RelaxedTaylor;
-use materialpoint::run::run_in;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use materialpoint_command::run::run_in;
 use nalgebra::{SMatrix, SVector, vector};
 
 use super::scene;

@@ -4,8 +4,8 @@
 //! Expected: F = 1.3 moves by millimetres; what F = 1.45 and 1.6 slide, less than linear creep, extrapolates to nothing at
 //! 1.40 (with cells half as large at 1.37).
 
-use materialpoint::run::run_in;
-use materialpoint::scene::Scene;
+use materialpoint_command::run::run_in;
+use materialpoint_command::scene::Scene;
 
 use super::scene;
 

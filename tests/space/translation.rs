@@ -7,8 +7,8 @@
 
 use materialpoint::error::StepError;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::run::InSpace;
-use materialpoint::scene::Scene;
+use materialpoint_command::run::InSpace;
+use materialpoint_command::scene::Scene;
 use nalgebra::SVector;
 
 use super::scene;

@@ -7,8 +7,8 @@
 //! runs. Linear Shepard stalls at cell crossings, B-splines are of second order from 48 cells on.
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
-use materialpoint::run::{RunError, run_in};
-use materialpoint::scene::Scene;
+use materialpoint_command::run::{RunError, run_in};
+use materialpoint_command::scene::Scene;
 
 use super::scene;
 use ReconstructionKind::{RelaxedTaylor, Shepard, Taylor};

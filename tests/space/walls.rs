@@ -5,8 +5,8 @@
 //! velocity up: the block vibrates as its weight comes on, at most with g h / c_p = 0.19 m/s. Stopped, it is left with a vibration
 //! in shear of at most mu g h / c_s = 0.19 m/s.
 
-use materialpoint::run::{InSpace, Summary, run_in};
-use materialpoint::scene::Scene;
+use materialpoint_command::run::{InSpace, Summary, run_in};
+use materialpoint_command::scene::Scene;
 
 use super::scene;
 

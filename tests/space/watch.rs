@@ -1,9 +1,9 @@
 //! Scenes stepped by hand, so that a test sees what happens on the way.
 
 use materialpoint::error::StepError;
-use materialpoint::run::{InSpace, simulation_in};
-use materialpoint::scene::{BoundaryKind, Expression, Scene, StepSize};
 use materialpoint::stepper::{FaceCondition, Forcing, Simulation};
+use materialpoint_command::run::{InSpace, simulation_in};
+use materialpoint_command::scene::{BoundaryKind, Expression, Scene, StepSize};
 use nalgebra::SVector;
 
 fn vector<const D: usize>(expressions: &[Expression], time: f64) -> SVector<f64, D> {

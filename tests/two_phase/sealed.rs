@@ -12,8 +12,8 @@
 
 use std::f64::consts::PI;
 
-use materialpoint::run::{Outcome, run, run_in};
-use materialpoint::scene::Scene;
+use materialpoint_command::run::{Outcome, run, run_in};
+use materialpoint_command::scene::Scene;
 
 pub const SEALED_BOX: &str = r#"
 title = "A sealed box of saturated soil takes a load"
