@@ -23,7 +23,9 @@ pub(crate) fn each_span<W: Sliced>(parallel: bool, span: usize, work: W, f: &(im
     halve(parallel, span, 0, work, f);
 }
 
-fn halve<W: Sliced>(parallel: bool, span: usize, first: usize, work: W, f: &(impl Fn(usize, W) + Sync)) {
+/// Compiled once for each kind of work, not for each pass: what a span is passed to is called through a pointer.
+#[inline(never)]
+fn halve<W: Sliced>(parallel: bool, span: usize, first: usize, work: W, f: &(dyn Fn(usize, W) + Sync)) {
     let spans = work.items().div_ceil(span);
     if spans <= 1 {
         return f(first, work);

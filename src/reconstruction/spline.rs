@@ -230,7 +230,13 @@ impl<T: Scalar> CubicSpline<T> {
                 self.values[i * stride + component] = sum.component(component);
             }
         }
-        self.interpolate(stride);
+        self.interpolate_field::<Q>();
+    }
+
+    /// Compiled once for a field, whatever its values come from; the number of components is known.
+    #[inline(never)]
+    fn interpolate_field<Q: Field<T>>(&mut self) {
+        self.interpolate(Q::COMPONENTS);
     }
 
     /// Value at `x`, which lies in interval `i` or beyond the end it touches.

@@ -43,7 +43,7 @@ where
         let pick = |_, acceleration| acceleration;
         let walls = Walls::of_solid(&self.face_dofs, forcing);
         self.dofs
-            .solve(Unknown::Acceleration, self.velocity_mass, &walls, true, pick);
+            .solve(Unknown::Acceleration, self.velocity_mass, &walls, true, &pick);
         self.note_inertia_of_held(forcing);
     }
 }

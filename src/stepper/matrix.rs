@@ -141,15 +141,16 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
 }
 
 impl<T: Scalar, const D: usize> Dofs<T, D> {
-    /// `M x = right`. The held DOFs are eliminated if they are constraints; they may differ from axis to axis. `pick` says
+    /// `M x = right`. Out of line: it knows neither basis nor law. The held DOFs are eliminated if they are constraints; they may differ from axis to axis. `pick` says
     /// which of their told velocity and acceleration counts. Without `fresh` the matrix is the one of the last call.
+    #[inline(never)]
     pub(super) fn solve(
         &mut self,
         unknown: Unknown,
         mass: VelocityMass,
         walls: &Walls<'_, T, D>,
         fresh: bool,
-        pick: impl Fn(T, T) -> T,
+        pick: &dyn Fn(T, T) -> T,
     ) {
         if D > 1 {
             return self.iterate(unknown, mass, walls, pick);
@@ -192,7 +193,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
         unknown: Unknown,
         mass: VelocityMass,
         walls: &Walls<'_, T, D>,
-        pick: impl Fn(T, T) -> T,
+        pick: &dyn Fn(T, T) -> T,
     ) {
         let right = match unknown {
             Unknown::Acceleration => &mut self.force,

@@ -177,7 +177,7 @@ where
             let pick = |velocity, _| velocity;
             let walls = Walls::of_solid(&self.face_dofs, forcing);
             self.dofs
-                .solve(Unknown::Velocity, self.velocity_mass, &walls, fresh, pick);
+                .solve(Unknown::Velocity, self.velocity_mass, &walls, fresh, &pick);
         }
         let velocities = &mut self.dofs.velocity;
         Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, velocity, _| {

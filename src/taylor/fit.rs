@@ -271,24 +271,29 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
             }
             return self.coefficients_from_sums(sums);
         }
-        self.successive_coefficients(samples, mean)
+        self.successive_coefficients(mean, &mut |visit| {
+            for (s, weight, value) in samples.clone() {
+                visit(&s, weight, value);
+            }
+        })
     }
 
     /// Coefficients where the points are not well spread: each function is fitted to what those before it have left.
     /// Fitted to the values themselves, a function that is small on the points would be given the round-off of all
-    /// that the values have in common, divided by the square of what is left of it.
+    /// that the values have in common, divided by the square of what is left of it. `samples` hands over local
+    /// coordinates, weight and value of each point; a call through a pointer, so that this is compiled once for a field.
     #[cold]
     #[inline(never)]
     fn successive_coefficients<const D: usize, Q: Field<T>>(
         &self,
-        samples: impl Iterator<Item = (SVector<T, D>, T, Q)> + Clone,
         mean: Q,
+        samples: &mut dyn FnMut(&mut dyn FnMut(&SVector<T, D>, T, Q)),
     ) -> [Q; NB] {
         let mut coefficients = [Q::zero(); NB];
         for k in (0..NB).filter(|&k| self.factors[(k, k)] != T::zero()) {
             let mut sum = Q::zero();
-            for (s, weight, value) in samples.clone() {
-                let psi = taylor_functions::<T, D, NB>(&s);
+            samples(&mut |s, weight, value| {
+                let psi = taylor_functions::<T, D, NB>(s);
                 let (mut rest, mut pi) = (value, psi[k]);
                 rest.add_scaled(-T::one(), mean);
                 for j in 0..k {
@@ -296,7 +301,7 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
                     pi += self.factors[(k, j)] * psi[j];
                 }
                 sum.add_scaled(weight * pi, rest);
-            }
+            });
             coefficients[k] = sum.scaled(self.factors[(k, k)]);
             let last = coefficients[k];
             for j in 0..k {

@@ -126,7 +126,7 @@ where
         if R::PARTICLE_MATRIX {
             let pick = |_, acceleration| acceleration;
             self.dofs
-                .solve(Unknown::Acceleration, self.velocity_mass, &walls, true, pick);
+                .solve(Unknown::Acceleration, self.velocity_mass, &walls, true, &pick);
         } else {
             super::super::velocity::divide(force, &self.dofs.mass);
         }

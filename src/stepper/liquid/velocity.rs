@@ -213,13 +213,13 @@ where
         for (dofs, walls) in [&mut self.dofs, &mut self.liquid].into_iter().zip(walls) {
             let mass = self.velocity_mass;
             if R::PARTICLE_MATRIX {
-                dofs.solve(Unknown::Velocity, mass, &walls, fresh, |velocity, _| velocity);
+                dofs.solve(Unknown::Velocity, mass, &walls, fresh, &|velocity, _| velocity);
             } else if R::AMOUNTS_AT_PARTICLES {
                 divide(&mut dofs.velocity, &dofs.mass);
             } else if mass == VelocityMass::Lumped {
                 divide(&mut dofs.velocity, &dofs.lumped);
             } else {
-                dofs.solve(Unknown::Velocity, mass, &walls, fresh, |velocity, _| velocity);
+                dofs.solve(Unknown::Velocity, mass, &walls, fresh, &|velocity, _| velocity);
             }
         }
         self.hold_velocities(dt, forcing);
