@@ -20,7 +20,7 @@ use failure::Failure;
 ///
 /// Without a command: the default study, a vibrating bar at large deformation with all methods side by side.
 #[derive(Debug, Parser)]
-#[command(version, about)]
+#[command(name = "materialpoint", version, about)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
