@@ -258,6 +258,7 @@ fn reason(error: &StepError) -> String {
         StepError::Friction { .. }
         | StepError::FrictionWithFlow { .. }
         | StepError::PressureWithoutFlow { .. }
+        | StepError::RubbingAcross { .. }
         | StepError::WallNotHeld { .. } => "wall".into(),
     }
 }

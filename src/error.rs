@@ -192,6 +192,17 @@ pub enum StepError {
         /// Its coefficient.
         coefficient: f64,
     },
+    /// A wall that rubs and moves along its normal.
+    #[error(
+        "the face {face} is to rub and to move at {velocity} m/s along its normal; a wall that rubs runs along itself \
+         (velocity without friction holds what is at the face)"
+    )]
+    RubbingAcross {
+        /// The face.
+        face: Face,
+        /// Component of its velocity (m/s) along the face's axis.
+        velocity: f64,
+    },
     /// A pressure outside the pores, where no liquid flows through them.
     #[error(
         "the face {face} has a pore pressure, but no liquid flows through the pores of this phase; leave it \

@@ -167,13 +167,12 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NewtonianFluid<T> {
         ))
     }
 
-    /// `rho c^2 = K J^-gamma`; of separated fluid what it will be on contact.
+    /// `rho c^2 = K J^-gamma`; of separated fluid what it will be on contact, when its density is `rho J` again.
     fn wave_speed(&self, density: T, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
-        let modulus = if self.is_separated(state) {
-            self.bulk_modulus
-        } else {
-            self.bulk_modulus * (-self.gamma * state.0.ln()).exp()
-        };
+        if self.is_separated(state) {
+            return (self.bulk_modulus / (density * state.0)).sqrt();
+        }
+        let modulus = self.bulk_modulus * (-self.gamma * state.0.ln()).exp();
         (modulus / density).sqrt()
     }
 

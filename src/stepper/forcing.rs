@@ -150,6 +150,11 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
                     let coefficient = coefficient.primal();
                     return Err(StepError::Friction { face, coefficient });
                 }
+                // The face stays where it is: what it touches is looked for there.
+                if let Some(&across) = velocity.get(face.axis).filter(|v| !v.is_zero()) {
+                    let velocity = across.primal();
+                    return Err(StepError::RubbingAcross { face, velocity });
+                }
             }
             if !flows && matches!(self.pores(face), PoreCondition::Pressure(_)) {
                 return Err(StepError::PressureWithoutFlow { face });

@@ -35,6 +35,20 @@ fn pressure_follows_the_volume() {
     }
 }
 
+/// Spray that is a thousandth as dense as the fluid meets other fluid at the speed of sound of the fluid.
+#[test]
+fn separated_fluid_has_the_wave_it_will_have_on_contact() {
+    let law = fluid(7.0);
+    let speed = |j: f64| {
+        let (stress, state) = (Matrix2::zeros(), VolumeRatio(j));
+        ConstitutiveLaw::<f64, 2>::wave_speed(&law, 1000.0 / j, &stress, &state)
+    };
+    let sound = (BULK / 1000.0).sqrt();
+    for j in [1.0, 1.1, 30.0, 1000.0] {
+        assert!((speed(j) / sound - 1.0).abs() < 1e-14, "{j}: {}", speed(j));
+    }
+}
+
 #[test]
 fn energy_is_the_work_of_the_pressure() {
     for gamma in [1.0, 7.0] {

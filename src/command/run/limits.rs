@@ -5,7 +5,7 @@ use std::fmt;
 use super::method_warnings::method_warnings;
 use super::schedule::Schedule;
 use crate::scene::{
-    Boundary, BoundaryKind, Method, Phases, PoreBoundary, ReconstructionKind, Scene, StepSize,
+    Boundary, BoundaryKind, Expression, Method, Phases, PoreBoundary, ReconstructionKind, Scene, StepSize,
 };
 use materialpoint::error::StepError;
 use materialpoint::grid::{Face, Side};
@@ -58,11 +58,15 @@ pub(super) fn warnings(scene: &Scene, schedule: &Schedule, gain: Option<EnergyGa
 }
 
 /// Steps in which a wall's impulses were not found to the last digit.
-pub(super) fn unsolved_contacts(steps: usize) -> Option<String> {
+pub(super) fn unsolved_contacts(scene: &Scene, steps: usize) -> Option<String> {
+    let or = match scene.method.reconstruction {
+        ReconstructionKind::Shepard => "",
+        _ => ", or method.reconstruction = \"shepard\"",
+    };
     (steps > 0).then(|| {
         format!(
-            "in {steps} steps the impulses of walls that rub were not found within their tolerance; take more particles per cell, \
-             or method.reconstruction = \"shepard\""
+            "in {steps} steps the impulses of walls that rub were not found within their tolerance: look at energy.wall_gain \
+             and the velocities at these walls; take a smaller time.safety or time.step{or}"
         )
     })
 }
@@ -147,19 +151,30 @@ impl fmt::Display for EnergyGain {
 
 fn gives_no_energy(scene: &Scene) -> bool {
     let at_rest = |boundary: &Boundary| {
-        let kind = match boundary.kind {
+        let kind = match &boundary.kind {
             BoundaryKind::Free
             | BoundaryKind::Fixed
             | BoundaryKind::Roller
             | BoundaryKind::Frictional { velocity: None, .. } => true,
-            BoundaryKind::Frictional { .. } | BoundaryKind::Velocity(_) | BoundaryKind::Traction(_) => false,
+            BoundaryKind::Frictional {
+                velocity: Some(values),
+                ..
+            }
+            | BoundaryKind::Velocity(values)
+            | BoundaryKind::Traction(values) => values.iter().all(Expression::is_zero),
         };
-        kind && !matches!(boundary.pores, PoreBoundary::Pressure(_))
+        let pores = match &boundary.pores {
+            PoreBoundary::Sealed | PoreBoundary::Drained => true,
+            PoreBoundary::Pressure(pressure) => pressure.is_zero(),
+        };
+        kind && pores
     };
     let driven = scene
         .reference
         .is_some_and(|reference| reference.gives_initial_state());
-    !driven && scene.body_force.is_none() && scene.boundaries.iter().all(at_rest)
+    // A load of zero, which somebody may have left there, loads nothing.
+    let loaded = scene.body_force.iter().flatten().any(|force| !force.is_zero());
+    !driven && !loaded && scene.boundaries.iter().all(at_rest)
 }
 
 /// What to do about a run that stopped, by `fault` if that is known: the end of a sentence.
@@ -218,4 +233,41 @@ fn face_left(scene: &Scene, position: &[f64]) -> Option<String> {
 /// Warnings of the method alone.
 pub(super) fn of_method(scene: &Scene) -> Vec<String> {
     method_warnings(scene)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::gives_no_energy;
+    use crate::scene::Scene;
+
+    const BAR: &str = r#"
+title = "Bar"
+grid = { min = [0], max = [2], cells = [4] }
+time = { step = 1e-3, end = 0.1 }
+method = { basis = "linear", reconstruction = "shepard" }
+[material]
+strain = "large"
+law.neo-hookean = { youngs_modulus = 1e6 }
+density = 1000
+[[body]]
+min = [0]
+max = [1]
+particles_per_cell = [2]
+[[boundary]]
+face = "x-min"
+roller = true
+"#;
+
+    #[test]
+    fn a_load_of_zero_loads_nothing() {
+        let quiet = |set: &str| gives_no_energy(&Scene::from_toml(BAR, &[set.to_owned()]).unwrap());
+        for still in ["load={body_force=[\"0\"]}", "load={body_force=[\"-2*0\"]}"] {
+            assert!(quiet(still), "{still}");
+        }
+        for loaded in ["load={body_force=[\"1\"]}", "load={body_force=[\"0*t\"]}"] {
+            assert!(!quiet(loaded), "{loaded}");
+        }
+        let moving = |velocity: &str| format!("boundary=[{{face=\"x-min\", velocity=[\"{velocity}\"]}}]");
+        assert!(quiet(&moving("0")) && !quiet(&moving("1")));
+    }
 }

@@ -190,7 +190,9 @@ where
     summary.warnings.extend(warnings::warnings::<D>(scene)?);
     summary.warnings.extend(missing);
     let unsolved = simulation.diagnostics().unsolved_contacts;
-    summary.warnings.extend(limits::unsolved_contacts(unsolved));
+    summary
+        .warnings
+        .extend(limits::unsolved_contacts(scene, unsolved));
     summary.removed = removed;
     let law = simulation.material_fields();
     let (particles, liquid) = simulation.into_particles();

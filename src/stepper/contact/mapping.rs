@@ -72,6 +72,8 @@ where
                 delassus: &contact.delassus,
                 velocity: &mut contact.velocity,
                 closed: &contact.closed,
+                // Symmetric only where the particles' own matrix is what accelerations are solved with.
+                subspace: R::PARTICLE_MATRIX.then_some(&mut contact.subspace),
             };
             let solved = problem.solve(least);
             if !solved.changed {

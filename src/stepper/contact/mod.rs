@@ -23,6 +23,7 @@ mod delassus;
 mod mapping;
 mod shape;
 mod solve;
+mod subspace;
 mod sums;
 mod wall;
 
@@ -36,6 +37,7 @@ use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use delassus::Delassus;
+use subspace::Subspace;
 use wall::{Contact, Wall, WallDofs};
 
 /// Distance of a particle's surface from a wall, in cells, below which they touch.
@@ -48,6 +50,7 @@ const ROUND_OFF: f64 = 16.0;
 pub(super) struct WallContact<T, const D: usize> {
     dofs: WallDofs<T, D>,
     delassus: Delassus<T, D>,
+    subspace: Subspace<T, D>,
     /// Of each particle, in the order in which they were given, its size along each axis over the root of its volume.
     shapes: Vec<SVector<T, D>>,
     /// Particles that see a DOF on a wall.
@@ -97,6 +100,7 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
         Self {
             dofs: WallDofs::none(),
             delassus: Delassus::none(),
+            subspace: Subspace::none(),
             shapes: Vec::new(),
             near: Vec::new(),
             closed: Vec::new(),
@@ -132,6 +136,7 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
             + size_of::<Contact<T, D>>() * self.tried.capacity()
             + self.dofs.bytes()
             + self.delassus.bytes()
+            + self.subspace.bytes()
     }
 
     /// Greatest velocity (m/s) of a closed contact relative to its wall.
@@ -234,6 +239,7 @@ where
         let seen = (self.basis.reach() + 1).pow(D as u32);
         contact.delassus.lay(&contact.dofs, seen);
         let (places, dofs) = (contact.dofs.dofs.len(), self.dofs.mass.len());
+        contact.subspace.lay(places);
         contact.inverse = vec![SVector::zeros(); places];
         contact.velocity = vec![SVector::zeros(); places];
         contact.impulse = vec![SVector::zeros(); places];

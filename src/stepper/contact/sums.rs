@@ -33,6 +33,7 @@ where
             delassus: &contact.delassus,
             velocity: &mut contact.velocity,
             closed: &contact.closed,
+            subspace: Some(&mut contact.subspace),
         };
         let solved = problem.solve(least);
         if !solved.changed {

@@ -89,6 +89,11 @@ pub(super) struct Contact<T, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Contact<T, D> {
+    /// Greatest impulse along the wall (N s).
+    pub(super) fn bound(&self) -> T {
+        self.wall.coefficient * self.normal
+    }
+
     /// The whole impulse (N s).
     pub(super) fn impulse(&self) -> SVector<T, D> {
         self.tangential + self.wall.along_normal(self.normal)
@@ -183,6 +188,12 @@ impl<T: Scalar, const D: usize> WallDofs<T, D> {
     #[inline(always)]
     pub(super) fn contacts_at(&mut self, place: usize) -> &mut [Contact<T, D>] {
         &mut self.contacts[self.contact_starts[place]..self.contact_starts[place + 1]]
+    }
+
+    /// Velocity (m/s) of the wall on which the DOF at `place` lies.
+    pub(super) fn wall_velocity(&self, place: usize) -> SVector<T, D> {
+        let first = self.contacts.get(self.contact_starts[place]);
+        first.map_or(SVector::zeros(), |contact| contact.wall.velocity)
     }
 
     fn join_neighbours(&mut self, shape: [usize; D], reach: usize) {

@@ -94,6 +94,17 @@ impl Expression {
         self.eval(&[t])
     }
 
+    /// The value of a formula without variables; `None` of any other.
+    pub fn constant(&self) -> Option<f64> {
+        let varies = |operation: &Operation| matches!(operation, Operation::Variable(_));
+        (!self.program.iter().any(varies)).then(|| self.compute(&[]))
+    }
+
+    /// Whether it is zero whatever the variables are, as `0` and `-2 * 0` are.
+    pub(crate) fn is_zero(&self) -> bool {
+        self.constant() == Some(0.0)
+    }
+
     /// Runs the program on a stack. The compiler leaves no operation without its operands; a missing one
     /// would count as not a number.
     fn compute(&self, values: &[f64]) -> f64 {

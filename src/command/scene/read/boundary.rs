@@ -2,7 +2,7 @@
 
 use super::material::PhaseCount;
 use super::{Item, Section, check_over_time};
-use crate::scene::expression::coordinates;
+use crate::scene::expression::{COORDINATES, coordinates};
 use crate::scene::text::one_of;
 use crate::scene::{Boundary, BoundaryKind, Expression, GridSpec, PoreBoundary, SceneError};
 use materialpoint::grid::{Face, Side};
@@ -42,7 +42,7 @@ pub(super) fn read(
             return Err(face.0.conflict(&problem));
         }
         let pores = pores(&section, end)?;
-        let kind = kind(&entry, &section, grid.cells.len(), end, phases)?;
+        let kind = kind(&entry, &section, (grid.cells.len(), face.1.axis), end, phases)?;
         boundaries.push(Boundary {
             face: face.1,
             inside: inside(&section, &kind, grid)?,
@@ -65,7 +65,7 @@ fn face<'a>(section: &Section<'a>, dimension: usize) -> Result<(Item<'a>, Face),
 fn kind(
     entry: &Item<'_>,
     section: &Section<'_>,
-    dimension: usize,
+    (dimension, axis): (usize, usize),
     end: f64,
     phases: PhaseCount,
 ) -> Result<BoundaryKind, SceneError> {
@@ -104,7 +104,10 @@ fn kind(
             let expected = "a coefficient of friction, 0 or more";
             let coefficient = item.number_where(expected, |coefficient| coefficient >= 0.0)?;
             let velocity = section.optional("velocity");
-            let velocity = velocity.map(|item| in_time(&item, dimension, end)).transpose()?;
+            let velocity = match velocity {
+                Some(item) => Some(along_the_wall(&item, dimension, end, axis)?),
+                None => None,
+            };
             Ok(BoundaryKind::Frictional {
                 coefficient,
                 velocity,
@@ -112,6 +115,23 @@ fn kind(
         }
         "velocity" => Ok(BoundaryKind::Velocity(in_time(&item, dimension, end)?)),
         _ => Ok(BoundaryKind::Traction(in_time(&item, dimension, end)?)),
+    }
+}
+
+/// The velocity of a wall that rubs, which runs along itself: the face stays where it is.
+fn along_the_wall(
+    item: &Item<'_>,
+    dimension: usize,
+    end: f64,
+    axis: usize,
+) -> Result<Vec<Expression>, SceneError> {
+    let velocity = in_time(item, dimension, end)?;
+    match velocity.get(axis).is_some_and(|across| !across.is_zero()) {
+        true => Err(item.conflict(&format!(
+            "a wall that rubs runs along itself; expected \"0\" along {}, or velocity without friction",
+            COORDINATES.get(axis).unwrap_or(&"its normal")
+        ))),
+        false => Ok(velocity),
     }
 }
 

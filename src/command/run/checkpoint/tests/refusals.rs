@@ -150,11 +150,11 @@ fn what_is_no_checkpoint_is_called_so() {
         refused(&path, &[]),
         CheckpointError::NotACheckpoint { .. }
     ));
-    bytes[8] = 4;
+    bytes[8] = 3;
     fs::write(&path, &bytes).unwrap();
     let message = refused(&path, &[]).to_string();
     assert!(
-        message.contains("has format 4; this version reads format 3"),
+        message.contains("has format 3; this version reads format 4"),
         "{message}"
     );
 }
