@@ -7,7 +7,7 @@
 //! spline and the smooth gradients do not feel it. The velocity error stays near 7e-4 m/s or above: at 0.5 % strain a
 //! small-strain law on particles that move is not the linear equation any more.
 //!
-//! Expected orders: measured with this code, reported in the README.
+//! Expected orders: measured with this code, reported in `docs/one-phase.md`.
 
 use super::*;
 

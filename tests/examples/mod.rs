@@ -122,6 +122,31 @@ fn the_own_basis_conforms() {
     .unwrap();
 }
 
+/// What a page shows of an example stands there word for word, and the README's program is the library's first one.
+#[test]
+fn the_pages_show_the_examples_as_they_are() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
+    let examples = read("examples/own_law.rs") + &read("examples/own_basis.rs");
+    let page = read("docs/guide/own-types.md");
+    let shown: Vec<&str> = page
+        .split("```rust\n")
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next())
+        .collect();
+    assert_eq!(shown.len(), 2);
+    for part in shown {
+        assert!(examples.contains(part), "{part}");
+    }
+    let (library, readme) = (read("src/lib.rs"), read("README.md"));
+    let program = library.split("//! ```\n").nth(1).unwrap();
+    for line in program.lines() {
+        let line = line.trim_start_matches("//!").trim();
+        let checks = line.starts_with('#') || line.contains("fallen");
+        assert!(checks || readme.contains(line), "{line}");
+    }
+}
+
 /// The page's program keeps the prose and fills the part between the markers; its picture is light enough for the repository.
 #[test]
 fn a_part_of_the_page_on_speed_and_error_is_written_anew() {
