@@ -1,4 +1,4 @@
-//! Constitutive laws. Equations, states and verified figures of all: `docs/laws.md`.
+//! Constitutive laws. Equations, states and verified figures of all: `docs/theory/laws.md`.
 
 mod any;
 mod constant;

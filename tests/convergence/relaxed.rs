@@ -3,8 +3,9 @@
 //! Large bar: relative L2 error of the stress at 0.1 s against the converged solution, as in `large_bar`. Column: against
 //! the dynamic solution, as in `column`. Smooth run: the large bar with v0 = 0.08 m/s, 80 cells, to 8 s. It stays smooth until
 //! 7.96 s, so the exact energy is constant; particles cross cell edges all the time, and published TLS gains energy without
-//! bound there. The figures are this library's own (`docs/relaxed-tls.md`); a prototype without the fits through neighbours
-//! and without free surfaces had 8.2e-3, 2.4e-3, 5.75e-4 on the bar and 6.6e-3, 1.6e-3, 1.6e-4 on the column.
+//! bound there. The figures are this library's own (`docs/theory/relaxed-tls.md`); a prototype without the fits
+//! through neighbours and without free surfaces had 8.2e-3, 2.4e-3, 5.75e-4 on the bar and 6.6e-3, 1.6e-3, 1.6e-4
+//! on the column.
 
 use super::*;
 

@@ -85,7 +85,7 @@ fn the_laws_keep_their_claims_in_single_precision() -> Result<(), Failure> {
     laws::<f32, 2>()
 }
 
-/// Numbers per particle besides the stress, as `docs/laws.md` tells them.
+/// Numbers per particle besides the stress, as `docs/theory/laws.md` tells them.
 #[test]
 fn states_are_as_small_as_told() {
     fn numbers<const D: usize, L: ConstitutiveLaw<f64, D>>(_: &L) -> usize {

@@ -1,4 +1,4 @@
-//! Source: relaxation of stresses, `docs/relaxed-tls.md`.
+//! Source: relaxation of stresses, `docs/theory/relaxed-tls.md`.
 //! Goal: the strain that a law gives for a change of stress makes that change.
 //! Parameters: changes of 1e-6 of the modulus in random directions; material at rest, and strained at random by up to 0.45.
 //! Expected: at rest the change itself, to its own size squared. Strained, material is stiffer along some axes than along others: what

@@ -11,7 +11,7 @@ const MOST_FROM_NEIGHBOURS: f64 = 0.03;
 ///
 /// What neighbours see otherwise than a cell itself is relaxed without being strained: a body under a lasting load creeps at a rate per
 /// time. It need not be relaxed where nothing moves, because only motion makes a fit another one; so rates that are counted in
-/// cells crossed by the particles do without. See `docs/relaxed-tls.md`.
+/// cells crossed by the particles do without. See `docs/theory/relaxed-tls.md`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relaxation<T> {
     /// Of stress and velocity towards the fit of the particle's own cell: a rate in units of one over the time in which a wave
