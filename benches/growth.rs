@@ -1,8 +1,9 @@
 //! How cost grows: time per particle and step, and memory per particle, from a thousand to ten million particles, with few
 //! and many of them per cell, for every method.
 //!
-//! `cargo bench --bench growth` prints the tables and writes them into `docs/speed-and-error.md` with the picture
-//! `docs/pictures/growth.svg`; `cargo bench --bench growth -- 1e6` stops at a million particles and writes nothing.
+//! `cargo bench --bench growth` prints the tables and writes them into `docs/verification/speed-and-error.md`
+//! with the picture `docs/pictures/growth.svg`; `cargo bench --bench growth -- 1e6` stops at a million particles
+//! and writes nothing.
 //!
 //! Each measurement is a process of its own, so that memory is what this one stepper made resident and nothing freed
 //! before. Where the system tells it (Linux), the time that the process was given counts, if that is less than the time on
@@ -375,9 +376,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     if benched && asked.is_none() {
         let pictures = Folder::create(&root().join("docs/pictures"))?;
         pictures.write("growth.svg", &picture(&all))?;
-        let page = &root().join("docs/speed-and-error.md");
+        let page = &root().join("docs/verification/speed-and-error.md");
         let text = format!(
-            "![Time of a particle's step against the number of particles](pictures/growth.svg)\n\n{tables}"
+            "![Time of a particle's step against the number of particles](../pictures/growth.svg)\n\n{tables}"
         );
         fs::write(page, fill_in(&fs::read_to_string(page)?, "growth", &text)?)?;
     }

@@ -1,4 +1,5 @@
-//! Who keeps, gains and loses energy in long runs: the bar for 8 and for 10 seconds, written into `docs/long-runs.md`.
+//! Who keeps, gains and loses energy in long runs: the bar for 8 and for 10 seconds, written into
+//! `docs/verification/long-runs.md`.
 //!
 //! `cargo run --release --example long_runs` measures all anew, in some minutes: the pictures in `docs/pictures/` and what
 //! stands between the markers of the page. The prose around them is not touched.
@@ -402,7 +403,7 @@ pub fn report(
     };
     let name = format!("long-runs-{}.svg", case.name);
     pictures.write(&name, &draw_lines(&captions, case.axis, &side_by_side, 2))?;
-    let mut text = format!("![{}](pictures/{name})\n", case.title);
+    let mut text = format!("![{}](../pictures/{name})\n", case.title);
     for (per_cell, runs) in per_cell.iter().zip(&both) {
         let _ = write!(
             text,
@@ -420,7 +421,7 @@ pub fn report(
 // The tests include this file as a module and call `report` themselves.
 #[allow(dead_code)]
 fn main() -> Result<(), Box<dyn Error>> {
-    let path = Path::new("docs/long-runs.md");
+    let path = Path::new("docs/verification/long-runs.md");
     let pictures = Folder::create(Path::new("docs/pictures"))?;
     for case in [SMOOTH, SHOCKS] {
         let page = fs::read_to_string(path)?;

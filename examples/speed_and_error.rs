@@ -1,4 +1,5 @@
-//! Which method buys the least error for the most speed: studies of the benchmarks, written into `docs/speed-and-error.md`.
+//! Which method buys the least error for the most speed: studies of the benchmarks, written into
+//! `docs/verification/speed-and-error.md`.
 //!
 //! `cargo run --release --example speed_and_error` measures all anew: the pictures in `docs/pictures/` and what stands
 //! between the markers of the page. The prose around them is not touched.
@@ -77,7 +78,8 @@ pub fn report(page: &str, case: &Case, care: Care, pictures: &Folder) -> Result<
     pictures.write(&name, &picture(&done, &scene.title))?;
     let cells: Vec<String> = case.cells.iter().map(usize::to_string).collect();
     let text = format!(
-        "![{}: error against time](pictures/{name})\n\n`materialpoint study {} --cells {}`; the front:\n\n{}",
+        "![{}: error against time](../pictures/{name})\n\n\
+         `materialpoint study {} --cells {}`; the front:\n\n{}",
         scene.title,
         case.scene,
         cells.join(","),
@@ -89,7 +91,7 @@ pub fn report(page: &str, case: &Case, care: Care, pictures: &Folder) -> Result<
 // The tests include this file as a module and call `report` themselves.
 #[allow(dead_code)]
 fn main() -> Result<(), Box<dyn Error>> {
-    let path = Path::new("docs/speed-and-error.md");
+    let path = Path::new("docs/verification/speed-and-error.md");
     let pictures = Folder::create(Path::new("docs/pictures"))?;
     let care = Care {
         repeat: 5,

@@ -1,4 +1,5 @@
-//! Which time steps are stable where a bar lies anyhow in the grid: maps of step and offset, for `docs/stability.md`.
+//! Which time steps are stable where a bar lies anyhow in the grid: maps of step and offset, for
+//! `docs/verification/stability.md`.
 //!
 //! `cargo run --release --example stability_map` draws them anew, in some minutes: `docs/pictures/stability-*.svg`.
 //!

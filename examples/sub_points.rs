@@ -1,5 +1,5 @@
 //! Dual domain with sub-points on the compacting column: the journal's Table 8, ours beside the papers'. What it shows is
-//! explained in `docs/sub-points.md`.
+//! explained in `docs/verification/sub-points.md`.
 //!
 //! `cargo run --release --example sub_points`
 //!

@@ -1,4 +1,4 @@
-//! Virtual points: the journal's Figures 4 and 5, drawn anew for `docs/stability.md`.
+//! Virtual points: the journal's Figures 4 and 5, drawn anew for `docs/verification/stability.md`.
 //!
 //! `cargo run --release --example virtual_points` draws `docs/pictures/virtual-points.svg` and prints the errors.
 //!

@@ -45,7 +45,8 @@ impl<T: Scalar, const D: usize> Default for PoreLiquid<T, D> {
 }
 
 /// A saturated solid in the formulation of two velocities (v-w; report 18-2, equations 5 to 11, as mended in
-/// `docs/two-phase.md`). With porosity $n$, unit weight $\gamma_w = \rho_w g$ and the derivative that follows the solid,
+/// `docs/verification/two-phase.md`). With porosity $n$, unit weight $\gamma_w = \rho_w g$ and the derivative
+/// that follows the solid,
 ///
 /// $$\rho_w\dot v_w = \nabla p - \frac{n\gamma_w}{k}(v_w - v_s) + \rho_w b,$$
 /// $$(1-n)\rho_s\dot v_s + n\rho_w\dot v_w = \nabla\cdot(\sigma' + p) + ((1-n)\rho_s + n\rho_w) b,$$

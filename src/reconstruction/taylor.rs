@@ -162,7 +162,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
     /// where there are particles in both neighbouring cells: from each of these that is fitted by its own particles with all
     /// functions, the value of that fit at the common edge is one more point of the least squares. It never enters the mean, so
     /// every amount is kept as without. Off by default: a smooth field is fitted much better, but runs are no more accurate
-    /// (figures in `docs/stability.md`).
+    /// (figures in `docs/verification/stability.md`).
     #[must_use]
     pub fn with_virtual_points(mut self, lent: bool) -> Self {
         self.virtual_points = lent;

@@ -45,7 +45,8 @@ where
     /// over the particles, about a step's work. For [`Stepper::largest_step`].
     ///
     /// Proved for plain MPM ([`Shepard`](crate::reconstruction::Shepard)) with every basis of values that are not negative, on every
-    /// layout: `docs/stability.md` has the proof. Of other reconstructions it bounds nothing: [`Stepper::stiffness`].
+    /// layout: `docs/verification/stability.md` has the proof. Of other reconstructions it bounds nothing:
+    /// [`Stepper::stiffness`].
     pub fn stiffness_bound(&mut self, forcing: &Forcing<T, D>) -> T {
         self.prepare();
         let held = self.held_dofs(forcing);

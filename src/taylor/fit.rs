@@ -29,9 +29,10 @@ use crate::scalar::Scalar;
 pub const DEFAULT_TOLERANCE: f64 = 0.02;
 
 /// Tolerance in two and three dimensions: 30 %. There six or ten functions share about as many particles, and irregular ones
-/// leave little of the last functions. On the manufactured waves of `docs/space.md` tolerances from 2 % to 40 % give the same
-/// errors where nine particles a cell lie on a lattice; where they are jittered, errors grow under refinement with 2 %, and fall with
-/// 20 % and more. Above 41 % the field of `tests/identities/anchors.rs` loses its mixed function.
+/// leave little of the last functions. On the manufactured waves of `docs/verification/space.md` tolerances
+/// from 2 % to 40 % give the same errors where nine particles a cell lie on a lattice; where they are
+/// jittered, errors grow under refinement with 2 %, and fall with 20 % and more. Above 41 % the field of
+/// `tests/identities/anchors.rs` loses its mixed function.
 pub const DEFAULT_TOLERANCE_IN_SPACE: f64 = 0.3;
 
 /// The default tolerance in so many dimensions.

@@ -7,7 +7,7 @@
 //! spline and the smooth gradients do not feel it. The velocity error stays near 7e-4 m/s or above: at 0.5 % strain a
 //! small-strain law on particles that move is not the linear equation any more.
 //!
-//! Expected orders: measured with this code, reported in `docs/one-phase.md`.
+//! Expected orders: measured with this code, reported in `docs/verification/one-phase.md`.
 
 use super::*;
 
@@ -50,7 +50,7 @@ fn nine_methods_keep_their_orders_over_a_period() {
 }
 
 /// The scene for studies runs an eighth longer, so that errors can be relative to something. Errors: measured with this code,
-/// in `docs/speed-and-error.md`.
+/// in `docs/verification/speed-and-error.md`.
 #[test]
 fn the_scene_of_one_period_follows_nine_eighths_of_it() {
     let period = 2.0 * (2e3_f64 / 7e6).sqrt();

@@ -1,8 +1,9 @@
 //! Dual domain with sub-points (Dhakal & Zhang 2016, journal Table 8): S sub-points in each particle's domain for the force.
 //!
 //! Expected: no independent figures exist for the printed gradient (the journal's belong to another one, see
-//! `docs/sub-points.md`), so the bounds are this code's own, from both sides. What is independent: one sub-point is plain dual
-//! domain to the bit, and no number of them changes the column, whose error is not one of the force.
+//! `docs/verification/sub-points.md`), so the bounds are this code's own, from both sides. What is
+//! independent: one sub-point is plain dual domain to the bit, and no number of them changes the column,
+//! whose error is not one of the force.
 
 use materialpoint::basis::DualDomain;
 use materialpoint::grid::{Face, Grid, Side};

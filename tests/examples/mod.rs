@@ -187,13 +187,13 @@ fn a_part_of_the_page_on_speed_and_error_is_written_anew() {
 #[test]
 fn the_page_on_speed_and_error_is_complete() {
     let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
-    let page = std::fs::read_to_string(docs.join("speed-and-error.md")).unwrap();
+    let page = std::fs::read_to_string(docs.join("verification/speed-and-error.md")).unwrap();
     let names = speed_and_error::CASES.map(|case| case.scene);
     for name in names.into_iter().chain(["growth"]) {
         materialpoint_command::output::fill_in(&page, name, "").unwrap();
     }
     let pictures: Vec<&str> = page
-        .split("](pictures/")
+        .split("](../pictures/")
         .skip(1)
         .filter_map(|rest| rest.split(')').next())
         .collect();
@@ -248,11 +248,11 @@ fn the_pages_on_long_runs_and_on_stability_have_their_pictures() {
         ("long-runs.md", &["smooth", "shocks"][..], 2),
         ("stability.md", &[], 4),
     ] {
-        let page = std::fs::read_to_string(docs.join(page)).unwrap();
+        let page = std::fs::read_to_string(docs.join("verification").join(page)).unwrap();
         for part in parts {
             materialpoint_command::output::fill_in(&page, part, "").unwrap();
         }
-        let rest = page.split("](pictures/").skip(1);
+        let rest = page.split("](../pictures/").skip(1);
         let pictures: Vec<&str> = rest.filter_map(|rest| rest.split(')').next()).collect();
         assert_eq!(pictures.len(), count);
         for picture in pictures {

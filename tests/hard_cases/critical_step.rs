@@ -15,9 +15,9 @@
 //!
 //! Expected: Shepard and relaxed TLS last on every layout, and the observed limit is the predicted one, since that is
 //! the largest eigenvalue of the same linear map, within 0.3 % or what 300 steps and the bisection can tell. Published
-//! TLS and the spline last on some of the layouts (`docs/stability.md`, printed by the table here), and have the
-//! predicted limit there, but for a few layouts of the spline that last at half the step and grow fast at 0.7 to 0.9 of
-//! it.
+//! TLS and the spline last on some of the layouts (`docs/verification/stability.md`, printed by the table
+//! here), and have the predicted limit there, but for a few layouts of the spline that last at half the step
+//! and grow fast at 0.7 to 0.9 of it.
 
 use materialpoint::method::{Method, ReconstructionKind};
 use materialpoint::stepper::Forcing;
@@ -28,7 +28,7 @@ use crate::examples::stability_map::{self, GROWTH, offset};
 
 const PER_CELL: [usize; 4] = [2, 4, 8, 16];
 
-/// The bar of the maps in `docs/stability.md`, shifted by `offset` cells.
+/// The bar of the maps in `docs/verification/stability.md`, shifted by `offset` cells.
 fn bar(method: Method, per_cell: usize, offset: f64) -> Scene {
     stability_map::bar(method, per_cell, offset).unwrap()
 }
@@ -136,7 +136,7 @@ impl Found {
         self.ratios.iter().filter(|&&ratio| ratio < 0.95).count()
     }
 
-    /// A line of the table in `docs/stability.md`.
+    /// A line of the table in `docs/verification/stability.md`.
     fn row(&self, method: Method) -> String {
         let n = self.ratios.len();
         let shown = |i: usize| {
@@ -171,7 +171,7 @@ fn without_an_energy_some_layouts_are_and_the_prediction_holds_for_them() {
 }
 
 #[test]
-#[ignore = "prints the table of docs/stability.md"]
+#[ignore = "prints the table of docs/verification/stability.md"]
 fn table() {
     println!(
         "| method | layouts that last | least ratio | median | largest | below 0.95 |\n|---|---|---|---|---|---|"

@@ -342,8 +342,8 @@ fn papers_cell(points: &[f64]) -> ([f64; 3], f64, f64) {
 }
 
 /// The large bar with three particles per cell: as they move cells are left with two, and neighbours lend them points. Fewer functions
-/// or virtual points, mass and momentum stay. Here the stress gains; it does not everywhere (`docs/stability.md`), which is why they
-/// are not the default.
+/// or virtual points, mass and momentum stay. Here the stress gains; it does not everywhere
+/// (`docs/verification/stability.md`), which is why they are not the default.
 #[test]
 fn virtual_points_on_the_large_bar() {
     use crate::convergence::{BSPLINE, LINEAR, TAYLOR, summary};

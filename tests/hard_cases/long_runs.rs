@@ -1,9 +1,10 @@
 //! Long runs in which particles cross cell edges all the time: who gains energy, who keeps it, who loses as much as is exact.
 //!
-//! The bar of `examples/long_runs.rs`, which writes all of it into `docs/long-runs.md`. *Smooth*: v0 = 0.08 m/s on 80 cells; nothing
-//! dissipates before 7.96 s. *Shocks*: v0 = 0.8 m/s on 20 cells; waves break at 0.79 s, and the entropy solution keeps 0.953,
-//! 0.502, 0.123, 0.036 of the energy at 1, 2, 5, 10 s. Energies are over the initial one; 1.0007 comes from velocities that live half
-//! a step early. `tests/convergence/relaxed.rs` bounds relaxed TLS on even layouts from above; here are the others, the
+//! The bar of `examples/long_runs.rs`, which writes all of it into `docs/verification/long-runs.md`.
+//! *Smooth*: v0 = 0.08 m/s on 80 cells; nothing dissipates before 7.96 s. *Shocks*: v0 = 0.8 m/s on 20 cells;
+//! waves break at 0.79 s, and the entropy solution keeps 0.953, 0.502, 0.123, 0.036 of the energy at 1, 2, 5,
+//! 10 s. Energies are over the initial one; 1.0007 comes from velocities that live half a step early.
+//! `tests/convergence/relaxed.rs` bounds relaxed TLS on even layouts from above; here are the others, the
 //! bounds from below, and random layouts.
 
 use materialpoint::method::{Basis, ReconstructionKind};
@@ -93,7 +94,7 @@ fn relaxed_tls_follows_the_entropy_solution() {
 
 /// On 20, 40 and 80 cells the energy of linear functions comes nearer to the entropy solution.
 #[test]
-#[ignore = "a minute; figures in docs/long-runs.md"]
+#[ignore = "a minute; figures in docs/verification/long-runs.md"]
 fn finer_grids_lose_what_the_entropy_solution_loses() {
     let (entropy, _) = exact(&SHOCKS, 1000).unwrap();
     for basis in BASES {
@@ -176,7 +177,7 @@ fn over_seeds(case: &Case, basis: Basis, per_cell: usize, jitter: f64) -> [f64; 
 /// No growth at 0.6; at 1.0, where particles nearly touch and a cell may hold two of four, linear functions and dual domain with
 /// 4 per cell gain in one layout of four (16 and 12 %). B-splines with 4 per cell never gain, but lose a quarter in one layout.
 #[test]
-#[ignore = "prints the table of random layouts in docs/long-runs.md; five minutes"]
+#[ignore = "prints the table of random layouts in docs/verification/long-runs.md; five minutes"]
 fn random_layouts_over_seeds() {
     for case in [&SMOOTH, &SHOCKS] {
         for jitter in [0.6, 1.0] {
@@ -204,7 +205,7 @@ fn random_layouts_over_seeds() {
 
 /// All methods, layouts and masses of the page: who stops, and that nobody else gains more than is documented.
 #[test]
-#[ignore = "two minutes; the figures are those of docs/long-runs.md"]
+#[ignore = "two minutes; the figures are those of docs/verification/long-runs.md"]
 fn who_lasts_in_the_full_set() {
     use materialpoint::method::Method;
     for case in [&SMOOTH, &SHOCKS] {

@@ -1,4 +1,4 @@
-//! The bound of the critical step (`docs/stability.md`) against the eigenvalue that it bounds.
+//! The bound of the critical step (`docs/verification/stability.md`) against the eigenvalue that it bounds.
 //!
 //! Bars, squares and cubes with free ends at offsets against the grid, on cells of 1 : 1 and 1 : 4, in regular and in random layouts, with
 //! one to four particles per cell and axis. Expected: the power iteration's eigenvalue never exceeds the bound, whatever the layout

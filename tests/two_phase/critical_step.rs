@@ -107,7 +107,7 @@ fn the_drag_limit_is_the_closed_form() {
     }
 }
 
-/// Observed over predicted, for the table in `docs/two-phase.md`.
+/// Observed over predicted, for the table in `docs/verification/two-phase.md`.
 #[test]
 #[ignore = "a table, not a check: cargo test --release --test main two_phase::critical_step -- --ignored --nocapture"]
 fn table_of_observed_over_predicted_steps() {

@@ -2,7 +2,8 @@
 //!
 //! Expected: Shepard and TLS keep mass and momentum of both phases to round-off, also where a run blows up; nothing panics.
 //! At half the predicted step Shepard always runs on; published TLS and the spline may end in a typed error, because on some
-//! layouts they grow whatever the step (`docs/two-phase.md`, long runs). Three times the step runs on or ends in one.
+//! layouts they grow whatever the step (`docs/verification/two-phase.md`, long runs). Three times the step
+//! runs on or ends in one.
 
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::Grid;

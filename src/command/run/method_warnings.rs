@@ -13,7 +13,7 @@ pub fn method_warnings(scene: &Scene) -> Vec<String> {
     all.into_iter().flatten().collect()
 }
 
-/// `docs/two-phase.md` has the figures.
+/// `docs/verification/two-phase.md` has the figures.
 fn spline_on_a_moving_surface(scene: &Scene) -> Option<String> {
     let Phases::Two(_) = scene.material.phases else {
         return None;

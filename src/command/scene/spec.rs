@@ -72,8 +72,8 @@ pub struct Method {
 
 impl Method {
     /// Fraction of the largest stable step that keeps the energy of bodies whose particles cross cells within some per cent
-    /// (`docs/stability.md`). Crossing hat functions gives every particle a small kick of no sign, the gradient's jump for a part
-    /// of a step, that shrinks with the step alone.
+    /// (`docs/verification/stability.md`). Crossing hat functions gives every particle a small kick of no
+    /// sign, the gradient's jump for a part of a step, that shrinks with the step alone.
     pub fn default_safety(&self) -> f64 {
         let hats = matches!(self.basis, Basis::Linear | Basis::BSpline { degree: 1 });
         match self.reconstruction {
