@@ -345,8 +345,9 @@ friction = 0.3
         assert!(v[2] > 0.6 && v[2] < 0.9, "{basis}: {v}");
         let expected = 0.5_f64.hypot(0.5) - 0.3 * (1.0 + v[2]);
         let along = v[0].hypot(v[1]);
+        // A corner that sticks for a moment takes less than mu of what presses there, and none takes more.
         assert!(
-            (along - expected).abs() < 0.01,
+            (-1e-6..0.03).contains(&(along - expected)),
             "{basis}: {along}, expected {expected}"
         );
     }
