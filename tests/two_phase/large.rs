@@ -151,6 +151,7 @@ fn errors_are_those_of_the_table_and_the_surface_bears_its_load() {
 /// Table 7's printed k = 1e-5: a settlement of -8.906e-3 m, not the printed 5.4e-2. The drained layer is two and a half cells
 /// deep, hence 1 to 1.7 % of error, with relaxed TLS and linear functions or dual domain 2.6 and 2.5 %: there neighbours differ most.
 #[test]
+#[ignore = "40 s: cargo test --release the_printed_permeability -- --ignored"]
 fn the_printed_permeability_settles_six_times_less() {
     let slopes_from_neighbours = |method: Method| method.reconstruction == RELAXED && method.basis != BSPLINE;
     check(1e-5, -8.906053e-3, |method| {
