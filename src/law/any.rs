@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::SMatrix;
 
-use super::sweep::Sealed;
+use super::sweep::{Bodies, Sealed};
 use super::{ConstitutiveLaw, LawSweep};
 use crate::record::Record;
 use crate::scalar::Scalar;
@@ -73,9 +73,10 @@ trait OfNumbers<T, const D: usize>: Send + Sync {
         state: &[T],
     ) -> Option<SMatrix<T, D, D>>;
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &[T]) -> T;
+    fn wave_speeds(&self, which: &[u32], bodies: &Bodies<'_, T, D, T>, speeds: &mut [T]);
     fn off_plane_stress(&self, stress: &SMatrix<T, D, D>, state: &[T]) -> Option<T>;
     fn plastic_strain(&self, state: &[T]) -> Option<T>;
-    fn energy_density(&self, stress: &SMatrix<T, D, D>, state: &[T]) -> T;
+    fn energy_densities(&self, stresses: &[SMatrix<T, D, D>], states: &[T], densities: &mut [T]);
 }
 
 /// The state that the numbers tell. They were told by such a state, or read from a file that was checked.
@@ -194,6 +195,16 @@ where
         ConstitutiveLaw::wave_speed(self, density, stress, &state_of(state))
     }
 
+    fn wave_speeds(&self, which: &[u32], bodies: &Bodies<'_, T, D, T>, speeds: &mut [T]) {
+        let each = count::<T, L::State>();
+        for (speed, &p) in speeds.iter_mut().zip(which) {
+            let p = p as usize;
+            let state = state_of(&bodies.state[p * each..(p + 1) * each]);
+            let density = bodies.mass[p] / bodies.volume[p];
+            *speed = ConstitutiveLaw::wave_speed(self, density, &bodies.stress[p], &state);
+        }
+    }
+
     fn off_plane_stress(&self, stress: &SMatrix<T, D, D>, state: &[T]) -> Option<T> {
         ConstitutiveLaw::off_plane_stress(self, stress, &state_of(state))
     }
@@ -202,8 +213,12 @@ where
         ConstitutiveLaw::plastic_strain(self, &state_of(state))
     }
 
-    fn energy_density(&self, stress: &SMatrix<T, D, D>, state: &[T]) -> T {
-        ConstitutiveLaw::energy_density(self, stress, &state_of(state))
+    fn energy_densities(&self, stresses: &[SMatrix<T, D, D>], states: &[T], densities: &mut [T]) {
+        let each = count::<T, L::State>();
+        for (p, (density, stress)) in densities.iter_mut().zip(stresses).enumerate() {
+            let state = state_of(&states[p * each..(p + 1) * each]);
+            *density = ConstitutiveLaw::energy_density(self, stress, &state);
+        }
     }
 }
 
@@ -285,6 +300,16 @@ macro_rules! any_law {
                 self.0.wave_speed(density, stress, state)
             }
 
+            #[inline]
+            fn wave_speeds(
+                &self,
+                which: &[u32],
+                bodies: &Bodies<'_, $scalar, D, $scalar>,
+                speeds: &mut [$scalar],
+            ) {
+                self.0.wave_speeds(which, bodies, speeds);
+            }
+
             fn off_plane_stress(
                 &self,
                 stress: &SMatrix<$scalar, D, D>,
@@ -297,8 +322,14 @@ macro_rules! any_law {
                 self.0.plastic_strain(state)
             }
 
-            fn energy_density(&self, stress: &SMatrix<$scalar, D, D>, state: &[$scalar]) -> $scalar {
-                self.0.energy_density(stress, state)
+            #[inline]
+            fn energy_densities(
+                &self,
+                stresses: &[SMatrix<$scalar, D, D>],
+                states: &[$scalar],
+                densities: &mut [$scalar],
+            ) {
+                self.0.energy_densities(stresses, states, densities);
             }
         }
     )+};

@@ -27,7 +27,7 @@ pub use moduli::Moduli;
 pub use neo_hookean::{DeformationGradient, NeoHookean};
 pub use newtonian_fluid::{NewtonianFluid, VolumeRatio};
 pub use st_venant_kirchhoff::StVenantKirchhoff;
-pub use sweep::LawSweep;
+pub use sweep::{Bodies, LawSweep};
 pub use von_mises::{VonMises, VonMisesState};
 
 use nalgebra::SMatrix;

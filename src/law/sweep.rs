@@ -12,6 +12,19 @@ mod sealed {
 }
 pub(super) use sealed::Sealed;
 
+/// What a law asks of the particles of a stepper, all of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Bodies<'a, T, const D: usize, N> {
+    /// Masses.
+    pub mass: &'a [T],
+    /// Volumes.
+    pub volume: &'a [T],
+    /// Cauchy stresses (Pa).
+    pub stress: &'a [SMatrix<T, D, D>],
+    /// States.
+    pub state: &'a [N],
+}
+
 /// A law as a [`Stepper`](crate::stepper::Stepper) meets it: every [`ConstitutiveLaw`] is one, and so is
 /// [`AnyLaw`](super::AnyLaw). There is nothing to implement.
 ///
@@ -68,14 +81,17 @@ pub trait LawSweep<T: Scalar, const D: usize>: Sealed<T, D> + Send + Sync {
     /// See [`ConstitutiveLaw::wave_speed`].
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &[Self::Number]) -> T;
 
+    /// [`ConstitutiveLaw::wave_speed`] of those of the particles that have the numbers `which`.
+    fn wave_speeds(&self, which: &[u32], bodies: &Bodies<'_, T, D, Self::Number>, speeds: &mut [T]);
+
     /// See [`ConstitutiveLaw::off_plane_stress`].
     fn off_plane_stress(&self, stress: &SMatrix<T, D, D>, state: &[Self::Number]) -> Option<T>;
 
     /// See [`ConstitutiveLaw::plastic_strain`].
     fn plastic_strain(&self, state: &[Self::Number]) -> Option<T>;
 
-    /// See [`ConstitutiveLaw::energy_density`].
-    fn energy_density(&self, stress: &SMatrix<T, D, D>, state: &[Self::Number]) -> T;
+    /// [`ConstitutiveLaw::energy_density`] of particles that follow each other.
+    fn energy_densities(&self, stresses: &[SMatrix<T, D, D>], states: &[Self::Number], densities: &mut [T]);
 
     /// Whether the law remembers anything of a particle besides its stress.
     #[inline(always)]
@@ -186,6 +202,15 @@ impl<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> LawSweep<T, D> for L {
         ConstitutiveLaw::wave_speed(self, density, stress, &own(state))
     }
 
+    #[inline]
+    fn wave_speeds(&self, which: &[u32], bodies: &Bodies<'_, T, D, L::State>, speeds: &mut [T]) {
+        for (speed, &p) in speeds.iter_mut().zip(which) {
+            let p = p as usize;
+            let (density, state) = (bodies.mass[p] / bodies.volume[p], &bodies.state[p]);
+            *speed = ConstitutiveLaw::wave_speed(self, density, &bodies.stress[p], state);
+        }
+    }
+
     fn off_plane_stress(&self, stress: &SMatrix<T, D, D>, state: &[L::State]) -> Option<T> {
         ConstitutiveLaw::off_plane_stress(self, stress, &own(state))
     }
@@ -194,8 +219,10 @@ impl<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> LawSweep<T, D> for L {
         ConstitutiveLaw::plastic_strain(self, &own(state))
     }
 
-    #[inline(always)]
-    fn energy_density(&self, stress: &SMatrix<T, D, D>, state: &[L::State]) -> T {
-        ConstitutiveLaw::energy_density(self, stress, &own(state))
+    #[inline]
+    fn energy_densities(&self, stresses: &[SMatrix<T, D, D>], states: &[L::State], densities: &mut [T]) {
+        for ((density, stress), state) in densities.iter_mut().zip(stresses).zip(states) {
+            *density = ConstitutiveLaw::energy_density(self, stress, state);
+        }
     }
 }

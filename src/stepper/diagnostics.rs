@@ -227,6 +227,9 @@ impl<T: Scalar> Conservation<T> {
     }
 }
 
+/// Particles whose energy is asked for at once.
+const BLOCK: usize = 128;
+
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
 where
     T: Scalar,
@@ -256,15 +259,22 @@ where
     /// Strain energy of the particles as they are, the liquid's included.
     pub(super) fn strain_energy(&self) -> T {
         let particles = &self.particles;
-        (0..particles.len()).fold(T::zero(), |sum, p| {
-            let mut density = self
-                .law
-                .energy_density(&particles.stress[p], self.law.of(&particles.state, p));
-            if P::FLOWS {
-                density += self.phase.liquid_energy_density(&particles.phase[p]);
+        let mut densities = [T::zero(); BLOCK];
+        let (each, mut sum) = (self.law.numbers(), T::zero());
+        for first in (0..particles.len()).step_by(BLOCK) {
+            let end = (first + BLOCK).min(particles.len());
+            let states = &particles.state[first * each..end * each];
+            self.law
+                .energy_densities(&particles.stress[first..end], states, &mut densities);
+            for (p, &solid) in (first..end).zip(&densities) {
+                let mut density = solid;
+                if P::FLOWS {
+                    density += self.phase.liquid_energy_density(&particles.phase[p]);
+                }
+                sum += density * particles.volume[p];
             }
-            sum + density * particles.volume[p]
-        })
+        }
+        sum
     }
 
     /// Copies of the velocities of the particles, and of their liquid.

@@ -4,13 +4,15 @@ use nalgebra::SMatrix;
 
 use super::Stepper;
 use crate::basis::BasisFamily;
-use crate::law::LawSweep;
+use crate::law::{Bodies, LawSweep};
 use crate::parallel::{CELLS, each_span, many_threads};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Crossed, Reconstruction};
 use crate::scalar::Scalar;
 use crate::tensor::determinant;
 
+/// Particles that a law is asked for at once.
+const AT_ONCE: usize = 32;
 /// Largest strain by which a relaxation moves a stress in a step.
 const MOST_STRAIN: f64 = 0.1;
 
@@ -110,11 +112,15 @@ where
         let particles = self.bins.particles_in(cell);
         // Also where a law has no wave any more: there is then nothing to relax.
         let (mut waves, mut squares) = (T::zero(), T::zero());
-        for &p in particles {
-            let p = p as usize;
-            let speed = self.wave_speed(p).max(T::zero());
-            waves += speed * speed;
-            squares += self.particles.velocity[p].component_mul(inverse).norm_squared();
+        let mut speeds = [T::zero(); AT_ONCE];
+        for some in particles.chunks(AT_ONCE) {
+            self.wave_speeds(some, &mut speeds);
+            for (&p, &speed) in some.iter().zip(&speeds) {
+                let speed = speed.max(T::zero());
+                waves += speed * speed;
+                let velocity = self.particles.velocity[p as usize];
+                squares += velocity.component_mul(inverse).norm_squared();
+            }
         }
         let count = T::count(particles.len().max(1));
         Crossed {
@@ -123,19 +129,26 @@ where
         }
     }
 
-    /// Speed of a wave at a particle (m/s); through both phases together where a liquid flows.
+    /// Speeds of waves at particles (m/s); through both phases together where a liquid flows.
     #[inline(always)]
-    fn wave_speed(&self, p: usize) -> T {
+    fn wave_speeds(&self, which: &[u32], speeds: &mut [T]) {
         let (phase, particles) = (&self.phase, &self.particles);
-        let volume = particles.volume[p];
-        let density = particles.mass[p] / volume;
-        let speed = self
-            .law
-            .wave_speed(density, &particles.stress[p], self.law.of(&particles.state, p));
+        let bodies = Bodies {
+            mass: &particles.mass,
+            volume: &particles.volume,
+            stress: &particles.stress,
+            state: &particles.state,
+        };
+        self.law.wave_speeds(which, &bodies, speeds);
         if !P::FLOWS {
-            return speed;
+            return;
         }
-        let stiffness = speed * speed * density + phase.liquid_stiffness();
-        (stiffness / (density + phase.liquid_mass(volume) / volume)).sqrt()
+        for (speed, &p) in speeds.iter_mut().zip(which) {
+            let p = p as usize;
+            let volume = particles.volume[p];
+            let density = particles.mass[p] / volume;
+            let stiffness = *speed * *speed * density + phase.liquid_stiffness();
+            *speed = (stiffness / (density + phase.liquid_mass(volume) / volume)).sqrt();
+        }
     }
 }
