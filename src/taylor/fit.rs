@@ -66,6 +66,9 @@ pub struct Gram<T, const NB: usize> {
     count: usize,
 }
 
+/// What is done with local coordinates, weight and value of a point.
+type Visit<'a, T, const D: usize, Q> = dyn FnMut(&SVector<T, D>, T, Q) + 'a;
+
 impl<T: Scalar, const NB: usize> Gram<T, NB> {
     /// Of the points with local coordinates and positive weights `points`.
     #[inline(always)]
@@ -288,7 +291,7 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
     fn successive_coefficients<const D: usize, Q: Field<T>>(
         &self,
         mean: Q,
-        samples: &mut dyn FnMut(&mut dyn FnMut(&SVector<T, D>, T, Q)),
+        samples: &mut dyn FnMut(&mut Visit<'_, T, D, Q>),
     ) -> [Q; NB] {
         let mut coefficients = [Q::zero(); NB];
         for k in (0..NB).filter(|&k| self.factors[(k, k)] != T::zero()) {

@@ -375,7 +375,7 @@ fn check_layer(set: &[String]) {
 fn a_sealed_layer_is_undrained_for_any_permeability() {
     for basis in BASES {
         for reconstruction in ["shepard", "taylor", "relaxed-taylor"] {
-            for exponent in [2, 3, 6, 10] {
+            for exponent in [2, 3, 10] {
                 let inside = (reconstruction == "relaxed-taylor").then_some(INSIDE);
                 for room in ROOMS.into_iter().chain(inside) {
                     let mut set = method(basis, reconstruction).to_vec();
