@@ -3,8 +3,10 @@
 //! With `v = v* + W R` the impulses `R` are those with `R_n >= 0`, `v_n >= 0`, `R_n v_n = 0`, and `|R_t| <= mu R_n` where `R_t`
 //! opposes the sliding wherever it reaches that bound. Projected Gauss-Seidel finds them: normal impulses first, then
 //! tangential ones with their bounds frozen. Along one flat wall `W` is a number times the identity for each pair of DOFs,
-//! so that neither changes the other, and both problems are convex: a solution cut short only dissipates. Between sweeps
-//! conjugate gradients solve for the contacts that are free to change ([`super::subspace`]). Where two walls meet, the normal of one is a tangent of the other; there both are done in turns until neither moves.
+//! so that neither changes the other, and both problems are convex: a solution cut short only dissipates. Between
+//! sweeps conjugate gradients solve for the contacts that are free to change ([`super::subspace`]). Where two walls
+//! meet, the normal of one is a tangent of the other; there both are done in turns until neither moves, by sweeps
+//! alone.
 
 use nalgebra::SVector;
 
