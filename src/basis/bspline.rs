@@ -1,8 +1,8 @@
 //! B-splines on open uniform knots.
 
-use super::tensor::{AxisFamily, Row, one_by_one};
-use crate::lanes::SideBySide;
+use super::tensor::{AxisBasis, AxisCell, Functions};
 use crate::scalar::Scalar;
+use crate::simd::{Lanes, Number, each, inlined};
 
 /// B-splines of degree $P$ on an open uniform knot vector $\xi$ (Cox-de Boor; Steffen, Kirby & Berzins 2008, journal section
 /// 4): `cells + P` DOFs along an axis, the first and last of which interpolate.
@@ -44,23 +44,6 @@ fn triangle<T: Scalar, const W: usize>(
     (value, slope)
 }
 
-/// Functions of a cell whose knots are all distinct. The quadratic ones are written out: a third of the triangle's operations.
-#[inline(always)]
-fn inner<T: Scalar, const W: usize>(unit: T) -> ([T; W], [T; W]) {
-    if W == 3 {
-        let (half, rest) = (T::one() / T::lit(2.0), T::one() - unit);
-        let value = [half * rest * rest, half + unit * rest, half * unit * unit];
-        let slope = [-rest, rest - unit, unit];
-        return (
-            std::array::from_fn(|k| value[k]),
-            std::array::from_fn(|k| slope[k]),
-        );
-    }
-    let left = std::array::from_fn(|j| unit + T::count(j));
-    let right = std::array::from_fn(|j| T::count(j + 1) - unit);
-    triangle(&left, &right, |j, _| T::one() / T::count(j))
-}
-
 /// Functions of a cell that sees the repeated knots at an end of the axis.
 #[inline(never)]
 fn outer<T: Scalar, const W: usize>(cells: usize, cell: usize, unit: T) -> ([T; W], [T; W]) {
@@ -78,17 +61,26 @@ fn all_knots_distinct(degree: usize, cells: usize, cell: usize) -> bool {
     cell + 1 >= degree && cell + degree <= cells
 }
 
-/// The functions of [`inner`] at several points, written out.
+/// Functions of a cell whose knots are all distinct, written out: the quadratic ones take a third of the triangle's operations.
 #[inline(always)]
-fn inner_lanes<T: Scalar, V: SideBySide<T>, const W: usize>(unit: V) -> ([V; W], [V; W]) {
-    let number = |n: f64| V::splat(T::lit(n));
+fn inner<T: Scalar, K: Lanes<T>, const W: usize>(k: K, unit: K::V) -> Functions<K::V, W> {
+    let number = inlined(
+        #[inline(always)]
+        |n: f64| k.splat(T::lit(n)),
+    );
     let (zero, one) = (number(0.0), number(1.0));
     let rest = one - unit;
-    let half = V::splat(T::one() / T::lit(2.0));
-    let sixth = V::splat(T::one() / T::lit(6.0));
+    let half = k.splat(T::one() / T::lit(2.0));
+    let sixth = k.splat(T::one() / T::lit(6.0));
     // Of the cubics at a distance d <= 1 from their middle: 2/3 - d^2 + d^3/2.
-    let near = |d: V| (d * half - one).mul_add(d * d, number(4.0) * sixth);
-    let near_slope = |d: V| (d * number(3.0) * half - number(2.0)) * d;
+    let near = inlined(
+        #[inline(always)]
+        |d: K::V| (d * half - one).mul_add(d * d, number(4.0) * sixth),
+    );
+    let near_slope = inlined(
+        #[inline(always)]
+        |d: K::V| (d * number(3.0) * half - number(2.0)) * d,
+    );
     let [a, b] = [half * rest * rest, half * unit * unit];
     let (value, slope) = match W {
         2 => ([rest, unit, zero, zero], [zero - one, one, zero, zero]),
@@ -106,15 +98,31 @@ fn inner_lanes<T: Scalar, V: SideBySide<T>, const W: usize>(unit: V) -> ([V; W],
             [zero - a, near_slope(unit), zero - near_slope(rest), b],
         ),
     };
-    (
-        std::array::from_fn(|k| value[k]),
-        std::array::from_fn(|k| slope[k]),
-    )
+    Functions {
+        value: each(
+            #[inline(always)]
+            |k| value[k],
+        ),
+        slope: each(
+            #[inline(always)]
+            |k| slope[k],
+        ),
+    }
+}
+
+/// The same of a cell near an end, point by point. Out of the way of the cells that need it not.
+#[inline(never)]
+fn near_end<T: Scalar, K: Lanes<T>, const W: usize>(k: K, at: AxisCell, unit: K::V) -> Functions<K::V, W> {
+    let [value, slope] = k.one_by_one(unit, |unit| {
+        let (value, slope) = outer(at.cells, at.cell, unit);
+        [value, slope]
+    });
+    Functions { value, slope }
 }
 
 macro_rules! degree {
     ($degree:literal, $width:literal) => {
-        impl<T: Scalar> AxisFamily<T, $width> for BSpline<$degree> {
+        impl<T: Scalar> AxisBasis<T, $width> for BSpline<$degree> {
             fn dofs_on_axis(&self, cells: usize) -> usize {
                 cells + $degree
             }
@@ -126,32 +134,16 @@ macro_rules! degree {
             }
 
             #[inline(always)]
-            fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, $width> {
-                let (value, slope) = if all_knots_distinct($degree, cells, cell) {
-                    inner(unit)
-                } else {
-                    outer(cells, cell, unit)
-                };
-                Row {
-                    dof: std::array::from_fn(|k| cell + k),
-                    value,
-                    slope,
-                }
-            }
-
-            const UNIFORM: bool = true;
-
-            #[inline(always)]
-            fn lanes<V: SideBySide<T>>(
+            fn evaluate<K: Lanes<T>>(
                 &self,
-                cells: usize,
-                cell: usize,
-                unit: V,
-            ) -> ([V; $width], [V; $width]) {
-                if all_knots_distinct($degree, cells, cell) {
-                    inner_lanes(unit)
+                k: K,
+                at: AxisCell,
+                unit: K::V,
+            ) -> Functions<K::V, $width> {
+                if all_knots_distinct($degree, at.cells, at.cell) {
+                    inner(k, unit)
                 } else {
-                    one_by_one(self, cells, cell, unit)
+                    near_end(k, at, unit)
                 }
             }
         }
@@ -167,6 +159,7 @@ degree!(3, 4);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simd::{One, Packs, Plain};
 
     /// Cox-de Boor as printed (journal section 4), on explicit knots: an independent evaluation.
     fn printed(knots: &[f64], i: usize, l: usize, x: f64) -> f64 {
@@ -184,34 +177,38 @@ mod tests {
 
     fn compare<const P: usize, const W: usize>(cells: usize)
     where
-        BSpline<P>: AxisFamily<f64, W>,
+        BSpline<P>: AxisBasis<f64, W>,
     {
         let knots: Vec<f64> = (0..=cells + 2 * P)
             .map(|k| k.saturating_sub(P).min(cells) as f64)
             .collect();
         for cell in 0..cells {
             for unit in [0.0, 0.125, 0.5, 0.93] {
-                let row = BSpline::<P>.row(cells, cell, unit);
+                let found = BSpline::<P>.evaluate(One, AxisCell { cells, cell }, unit);
                 for k in 0..W {
-                    let exact = printed(&knots, row.dof[k], P, cell as f64 + unit);
-                    assert!((row.value[k] - exact).abs() < 1e-15, "{cells} {cell} {unit} {k}");
+                    let exact = printed(&knots, cell + k, P, cell as f64 + unit);
+                    assert!(
+                        (found.value[k] - exact).abs() < 1e-15,
+                        "{cells} {cell} {unit} {k}"
+                    );
                 }
             }
         }
     }
 
-    fn compare_lanes<const P: usize, const W: usize>(cells: usize)
+    fn compare_packs<const P: usize, const W: usize>(cells: usize)
     where
-        BSpline<P>: AxisFamily<f64, W>,
+        BSpline<P>: AxisBasis<f64, W>,
     {
         let units = [0.0, 0.125, 0.5, 0.93];
         for cell in 0..cells {
-            let (values, slopes) = BSpline::<P>.lanes(cells, cell, wide::f64x4::new(units));
+            let at = AxisCell { cells, cell };
+            let four = BSpline::<P>.evaluate(Plain, at, Plain.new(units));
             for l in 0..4 {
-                let row = BSpline::<P>.row(cells, cell, units[l]);
+                let one = BSpline::<P>.evaluate(One, at, units[l]);
                 for k in 0..W {
-                    assert!((row.value[k] - values[k].to_array()[l]).abs() < 1e-15);
-                    assert!((row.slope[k] - slopes[k].to_array()[l]).abs() < 1e-15);
+                    assert!((one.value[k] - four.value[k].0[l]).abs() < 1e-15);
+                    assert!((one.slope[k] - four.slope[k].0[l]).abs() < 1e-15);
                 }
             }
         }
@@ -220,9 +217,9 @@ mod tests {
     #[test]
     fn four_points_at_once_see_what_each_sees() {
         for cells in 1..9 {
-            compare_lanes::<1, 2>(cells);
-            compare_lanes::<2, 3>(cells);
-            compare_lanes::<3, 4>(cells);
+            compare_packs::<1, 2>(cells);
+            compare_packs::<2, 3>(cells);
+            compare_packs::<3, 4>(cells);
         }
     }
 

@@ -4,11 +4,12 @@ use std::ops::Range;
 
 use nalgebra::SVector;
 
-use super::tensor::{self, AxisFamily, Row};
+use super::tensor::{self, AxisBasis, AxisCell, Factors, Functions, axis_cell, factors_of};
 use super::{BasisFamily, FixedPoints, Linear};
 use crate::grid::{Cell, Grid};
 use crate::particles::Bins;
 use crate::scalar::Scalar;
+use crate::simd::{Lanes, Number, One, each};
 
 /// Dual domain basis (Zhang, Ma & Giguere 2011, journal section 3.3): values of the linear hats, smoothed gradients
 ///
@@ -33,6 +34,12 @@ fn side(axis: usize, above: bool) -> u8 {
     1 << (2 * axis + usize::from(above))
 }
 
+/// Whether a cell lacks its neighbours along an axis: below it, above it.
+#[inline(always)]
+fn ends(missing: u8, axis: usize) -> [bool; 2] {
+    [missing & side(axis, false) != 0, missing & side(axis, true) != 0]
+}
+
 impl DualDomain {
     /// On a grid whose every cell counts, until [`BasisFamily::take_in`] says which do.
     pub fn new() -> Self {
@@ -54,51 +61,72 @@ impl DualDomain {
     }
 }
 
-/// Nodes, values and slopes in `cell`; `ends` says on which sides the domain ends there.
+/// Values and slopes of the nodes `first_dof(at)` to `first_dof(at) + 3` in a cell; `ends` says on which sides the domain
+/// ends there.
 #[inline(always)]
-fn row<T: Scalar>(cells: usize, cell: usize, unit: T, ends: [bool; 2]) -> Row<T, 4> {
-    let (zero, one) = (T::zero(), T::one());
-    let two = one + one;
+fn functions<T: Scalar, K: Lanes<T>>(k: K, at: AxisCell, unit: K::V, ends: [bool; 2]) -> Functions<K::V, 4> {
+    let (zero, one) = (k.splat(T::zero()), k.splat(T::one()));
+    let half = k.splat(T::one() / T::lit(2.0));
     let (left, right) = (one - unit, unit);
-    let alpha = two * left * right;
+    let alpha = (left + left) * right;
     let smooth_left = (one - alpha) * left;
     let smooth_right = (one - alpha) * right;
     // Slopes of the four nodes cell - 1 ... cell + 2.
-    let mut slope = [zero, -alpha, alpha, zero];
+    let mut slope = [zero, zero - alpha, alpha, zero];
     if ends[0] {
-        slope[1] -= smooth_left;
-        slope[2] += smooth_left;
+        slope[1] = slope[1] - smooth_left;
+        slope[2] = slope[2] + smooth_left;
     } else {
-        slope[0] -= smooth_left / two;
-        slope[2] += smooth_left / two;
+        slope[0] = slope[0] - smooth_left * half;
+        slope[2] = smooth_left.mul_add(half, slope[2]);
     }
     if ends[1] {
-        slope[1] -= smooth_right;
-        slope[2] += smooth_right;
+        slope[1] = slope[1] - smooth_right;
+        slope[2] = slope[2] + smooth_right;
     } else {
-        slope[1] -= smooth_right / two;
-        slope[3] += smooth_right / two;
+        slope[1] = slope[1] - smooth_right * half;
+        slope[3] = smooth_right.mul_add(half, slope[3]);
     }
-    Row {
-        dof: [cell.saturating_sub(1), cell, cell + 1, (cell + 2).min(cells)],
-        value: [zero, left, right, zero],
-        slope,
+    let value = [zero, left, right, zero];
+    // At an end of the grid the four nodes begin at another place, and those left over have a zero.
+    match at.cell - first_node(at) {
+        0 => Functions {
+            value: [left, right, zero, zero],
+            slope: [slope[1], slope[2], slope[3], zero],
+        },
+        1 => Functions { value, slope },
+        _ => Functions {
+            value: [zero, zero, left, right],
+            slope: [zero, slope[0], slope[1], slope[2]],
+        },
     }
 }
 
-impl<T: Scalar> AxisFamily<T, 4> for DualDomain {
+/// The first of the four nodes: the one before the cell's own two, or the first or fourth last of the grid.
+#[inline(always)]
+fn first_node(at: AxisCell) -> usize {
+    at.cell.min((at.cells + 1).saturating_sub(3)).saturating_sub(1)
+}
+
+impl<T: Scalar> AxisBasis<T, 4> for DualDomain {
     fn dofs_on_axis(&self, cells: usize) -> usize {
         cells + 1
     }
 
     /// On an axis whose every cell counts.
     #[inline(always)]
-    fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, 4> {
-        row(cells, cell, unit, [cell == 0, cell + 1 == cells])
+    fn evaluate<K: Lanes<T>>(&self, k: K, at: AxisCell, unit: K::V) -> Functions<K::V, 4> {
+        functions(k, at, unit, [at.cell == 0, at.cell + 1 == at.cells])
+    }
+
+    #[inline(always)]
+    fn first_dof(&self, at: AxisCell) -> usize {
+        first_node(at)
     }
 }
 
 impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
+    const WIDTH: usize = 4;
     const TAKES_IN_CELLS: bool = true;
     const AT_FIXED_POINTS: FixedPoints = FixedPoints::Linear;
     const FOLLOWS_WINDOW: bool = true;
@@ -138,8 +166,8 @@ impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
     }
 
     fn dof_window(&self, grid: &Grid<T, D>, first: &Cell<D>, last: &Cell<D>) -> Range<usize> {
-        // A cell at an end sees less beyond its nodes than others, so the numbers of its DOFs do not grow with its own. That of
-        // its lowest node does, and gradients reach at most one node below and two above it along each axis.
+        // The four nodes of a cell at an end lie otherwise about it than those of others, so their numbers do not grow with its
+        // own. That of its lowest node does, and they reach at most two below it and three above along each axis.
         let (lowest, shape) = (grid.window().first(), grid.window().shape());
         let (mut first_node, mut last_node, mut step, mut stride) = (0, 0, 0, 1);
         for axis in 0..D {
@@ -148,7 +176,7 @@ impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
             step += stride;
             stride *= shape[axis] + 1;
         }
-        first_node.saturating_sub(step)..(last_node + 2 * step + 1).min(stride)
+        first_node.saturating_sub(2 * step)..(last_node + 3 * step + 1).min(stride)
     }
 
     #[inline(always)]
@@ -159,14 +187,34 @@ impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
         x: &SVector<T, D>,
         f: impl FnMut(usize, T, SVector<T, D>),
     ) {
-        let cells = grid.cells();
         let missing = self.missing(grid, cell);
-        let rows = std::array::from_fn(|axis| {
+        let rows = each(|axis| {
+            let at = axis_cell(grid, cell, axis);
             let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
-            let ends = [false, true].map(|above| missing & side(axis, above) != 0);
-            row(cells[axis], cell[axis] as usize, unit, ends)
+            (first_node(at), functions(One, at, unit, ends(missing, axis)))
         });
         tensor::product_of_rows(grid, &rows, |cells| cells + 1, f);
+    }
+
+    #[inline(always)]
+    fn factors<K: Lanes<T>>(
+        &self,
+        k: K,
+        grid: &Grid<T, D>,
+        cell: &Cell<D>,
+        unit: &[K::V; D],
+    ) -> Factors<K::V, D> {
+        let missing = self.missing(grid, cell);
+        factors_of(
+            k,
+            #[inline(always)]
+            |axis| functions(k, axis_cell(grid, cell, axis), unit[axis], ends(missing, axis)),
+        )
+    }
+
+    #[inline(always)]
+    fn first_dofs(&self, grid: &Grid<T, D>, cell: &Cell<D>) -> [usize; D] {
+        tensor::first_dofs(self, grid, cell)
     }
 
     /// Gauss points stand still, so nothing crosses there: the plain gradient is the accurate one.

@@ -1,6 +1,6 @@
 //! Basis families: which degrees of freedom (DOFs) a point sees, with value and gradient.
 //!
-//! Every family here is a tensor product of one-axis families ([`AxisFamily`]); a family of your own either
+//! Every family here is a tensor product of one-axis families ([`AxisBasis`]); a family of your own either
 //! does the same in a few lines (see `examples/own_basis.rs`) or implements [`BasisFamily`] directly.
 
 mod bspline;
@@ -14,16 +14,16 @@ pub use dual_domain::DualDomain;
 pub use interpolant::Interpolant;
 pub use linear::Linear;
 pub(crate) use tensor::MOST_WIDTH;
-pub use tensor::{AxisFamily, Factors, Row};
+pub use tensor::{AxisBasis, AxisCell, Factors, Functions};
 
 use std::ops::Range;
 
 use nalgebra::SVector;
 
 use crate::grid::{Cell, Face, Grid, Side};
-use crate::lanes::SideBySide;
 use crate::particles::Bins;
 use crate::scalar::Scalar;
+use crate::simd::Lanes;
 
 /// What a family is at points that stand still, where nothing crosses from cell to cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,8 +59,8 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
     }
 
     /// Number of functions along each axis of a cell, if a cell's functions are the products of [`BasisFamily::factors`]: those
-    /// of DOFs that follow each other along every axis, from the cell's own index on, the same in all cells that have as many
-    /// cells on every side. Zero if they are not, or nobody has said
+    /// of DOFs that follow each other along every axis, from [`BasisFamily::first_dofs`] on, the same in all cells that have as
+    /// many cells on every side. Zero if they are not, or nobody has said
     /// so; four points of a cell are then not computed at once.
     const WIDTH: usize = 0;
 
@@ -83,13 +83,25 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
     /// The functions of `cell` at several of its points, whose coordinates from 0 to 1 in the cell are `unit`. Only asked where
     /// [`BasisFamily::WIDTH`] is not zero.
     #[inline(always)]
-    fn factors<V: SideBySide<T>>(&self, _grid: &Grid<T, D>, _cell: &Cell<D>, unit: &[V; D]) -> Factors<V, D> {
+    fn factors<K: Lanes<T>>(
+        &self,
+        k: K,
+        _grid: &Grid<T, D>,
+        _cell: &Cell<D>,
+        _unit: &[K::V; D],
+    ) -> Factors<K::V, D> {
         const { assert!(Self::WIDTH == 0, "WIDTH wants an own `factors`") };
-        let nothing = unit.map(|_| [V::splat(T::zero()); tensor::MOST_WIDTH]);
+        let nothing = [[k.splat(T::zero()); tensor::MOST_WIDTH]; D];
         Factors {
             value: nothing,
             slope: nothing,
         }
+    }
+
+    /// Number of a cell's first DOF along each axis, in the whole grid; likewise.
+    #[inline(always)]
+    fn first_dofs(&self, _grid: &Grid<T, D>, cell: &Cell<D>) -> [usize; D] {
+        cell.map(|index| index as usize)
     }
 
     /// Polynomial degree that the values reproduce.

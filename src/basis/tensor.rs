@@ -6,8 +6,8 @@ use nalgebra::SVector;
 
 use super::BasisFamily;
 use crate::grid::{Cell, Face, Grid, Side};
-use crate::lanes::SideBySide;
 use crate::scalar::Scalar;
+use crate::simd::{Lanes, One, each};
 
 /// Most functions along an axis of a cell that can be computed for several points at once.
 pub const MOST_WIDTH: usize = 4;
@@ -22,36 +22,40 @@ pub struct Factors<V, const D: usize> {
     pub slope: [[V; MOST_WIDTH]; D],
 }
 
-/// The `W` DOFs that one point of an axis sees.
-#[derive(Clone, Copy, Debug)]
-pub struct Row<T, const W: usize> {
-    /// DOF along the axis.
-    pub dof: [usize; W],
-    /// Value of its function.
-    pub value: [T; W],
-    /// Derivative of its function by the coordinate in cell sizes (multiply by `1/h`).
-    pub slope: [T; W],
+/// A cell of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AxisCell {
+    /// Cells of the axis.
+    pub cells: usize,
+    /// Number of this one.
+    pub cell: usize,
 }
 
-/// A family of functions of one axis that has `n` cells of size 1; at most `W` functions per cell.
-pub trait AxisFamily<T: Scalar, const W: usize> {
+/// The `W` functions of a cell of an axis at several of its points.
+#[derive(Clone, Copy, Debug)]
+pub struct Functions<V, const W: usize> {
+    /// Values.
+    pub value: [V; W],
+    /// Derivatives by the coordinate in cell sizes (multiply by `1/h`).
+    pub slope: [V; W],
+}
+
+/// A basis of one axis that has `n` cells of size one: `W` functions a cell, those of DOFs that follow each other.
+///
+/// Cells that have `W` or more cells on both sides have the same functions. One evaluation, generic in the packs of
+/// numbers that it computes with, serves single points and several points of a cell at once.
+pub trait AxisBasis<T: Scalar, const W: usize>: Send + Sync {
     /// Number of DOFs on an axis of `cells` cells.
     fn dofs_on_axis(&self, cells: usize) -> usize;
 
-    /// Values and slopes in `cell` at `unit` (0 at the cell's left edge, 1 at its right one). Where fewer
-    /// than `W` functions exist, the spare entries repeat a DOF with zero value and slope.
-    fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, W>;
+    /// Values and slopes of the cell's functions at points whose coordinates are `unit`: 0 at the cell's lower edge,
+    /// 1 at its upper one. A function that a cell lacks is zero.
+    fn evaluate<K: Lanes<T>>(&self, k: K, at: AxisCell, unit: K::V) -> Functions<K::V, W>;
 
-    /// Whether the DOFs of cell `i` are `i, i + 1, ... i + W - 1` everywhere, and the functions of all cells that have `W` or more
-    /// cells on both sides the same. Then, in two and three dimensions, a step computes with four particles of a cell, or with
-    /// four cells, at once.
-    const UNIFORM: bool = false;
-
-    /// Values and slopes of [`AxisFamily::row`] at several points of a cell; only asked where [`AxisFamily::UNIFORM`].
-    /// Unless told otherwise one point after the other.
+    /// The first of the cell's DOFs; unless told otherwise that with the cell's own number.
     #[inline(always)]
-    fn lanes<V: SideBySide<T>>(&self, cells: usize, cell: usize, unit: V) -> ([V; W], [V; W]) {
-        one_by_one(self, cells, cell, unit)
+    fn first_dof(&self, at: AxisCell) -> usize {
+        at.cell
     }
 
     /// Whether a wall at an end is held about only, see [`BasisFamily::HOLDS_ABOUT`].
@@ -62,19 +66,16 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
     /// the wall: strain there too, which costs an order of accuracy, so a family whose ends interpolate is
     /// better at walls.
     fn dofs_at_end(&self, cells: usize, side: Side) -> Range<usize> {
-        let row = match side {
-            Side::Min => self.row(cells, 0, T::zero()),
-            Side::Max => self.row(cells, cells.saturating_sub(1), T::one()),
+        let (cell, unit) = match side {
+            Side::Min => (0, T::zero()),
+            Side::Max => (cells.saturating_sub(1), T::one()),
         };
-        let felt = row
-            .dof
-            .iter()
-            .zip(&row.value)
-            .filter(|(_, value)| !value.is_zero());
-        let (first, end) = felt.fold((usize::MAX, 0), |(first, end), (&dof, _)| {
-            (first.min(dof), end.max(dof + 1))
-        });
-        first.min(end)..end
+        let at = AxisCell { cells, cell };
+        let (first, values) = (self.first_dof(at), self.evaluate(One, at, unit).value);
+        let felt = |value: &T| !value.is_zero();
+        let low = values.iter().position(felt).unwrap_or(0);
+        let high = values.iter().rposition(felt).map_or(low, |k| k + 1);
+        first + low..first + high
     }
 
     /// Where, in cell sizes from the axis's lower end, the value that belongs to `dof` is taken when a field is interpolated:
@@ -85,46 +86,49 @@ pub trait AxisFamily<T: Scalar, const W: usize> {
     }
 }
 
-/// Whether the DOFs of a cell follow from its index alone, see [`BasisFamily::FOLLOWS_WINDOW`].
-pub const fn follows_window<T: Scalar, const W: usize, A: AxisFamily<T, W>>() -> bool {
-    A::UNIFORM
+/// [`BasisFamily::WIDTH`] of a product of bases that have so many functions a cell.
+pub const fn width_in_packs(width: usize) -> usize {
+    if width <= MOST_WIDTH { width } else { 0 }
 }
 
-/// [`BasisFamily::WIDTH`] of the product of a family with itself.
-pub const fn width_in_lanes<T: Scalar, const W: usize, A: AxisFamily<T, W>>() -> usize {
-    if A::UNIFORM && W <= MOST_WIDTH { W } else { 0 }
-}
-
-/// [`AxisFamily::lanes`] by way of [`AxisFamily::row`]. Out of the way of the cells that need it not.
-#[inline(never)]
-pub fn one_by_one<T: Scalar, const W: usize, A: AxisFamily<T, W> + ?Sized, V: SideBySide<T>>(
-    family: &A,
-    cells: usize,
-    cell: usize,
-    unit: V,
-) -> ([V; W], [V; W]) {
-    let [value, slope] = unit.one_by_one(|unit| {
-        let row = family.row(cells, cell, unit);
-        [row.value, row.slope]
-    });
-    (value, slope)
+/// The cell of an axis.
+#[inline(always)]
+pub fn axis_cell<T: Scalar, const D: usize>(grid: &Grid<T, D>, cell: &Cell<D>, axis: usize) -> AxisCell {
+    AxisCell {
+        cells: grid.cells()[axis],
+        cell: cell[axis] as usize,
+    }
 }
 
 /// The factors along each axis at the points of `cell` with the coordinates `unit`.
 #[inline(always)]
-pub fn factors<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>, V: SideBySide<T>>(
+pub fn factors<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>, K: Lanes<T>>(
     family: &A,
+    k: K,
     grid: &Grid<T, D>,
     cell: &Cell<D>,
-    unit: &[V; D],
-) -> Factors<V, D> {
-    let (cells, zero) = (grid.cells(), V::splat(T::zero()));
+    unit: &[K::V; D],
+) -> Factors<K::V, D> {
+    factors_of(
+        k,
+        #[inline(always)]
+        |axis| family.evaluate(k, axis_cell(grid, cell, axis), unit[axis]),
+    )
+}
+
+/// The factors of the functions of each axis.
+#[inline(always)]
+pub(crate) fn factors_of<T: Scalar, const D: usize, const W: usize, K: Lanes<T>>(
+    k: K,
+    functions: impl Fn(usize) -> Functions<K::V, W>,
+) -> Factors<K::V, D> {
+    let zero = k.splat(T::zero());
     let mut factors = Factors {
         value: [[zero; MOST_WIDTH]; D],
         slope: [[zero; MOST_WIDTH]; D],
     };
     for axis in 0..D {
-        let (value, slope) = family.lanes(cells[axis], cell[axis] as usize, unit[axis]);
+        let Functions { value, slope } = functions(axis);
         // Copies of slices or iterators over the packs go through memory: measured at a fifth to three quarters of the speed of a
         // whole step.
         #[allow(clippy::manual_memcpy)]
@@ -136,8 +140,21 @@ pub fn factors<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>, V
     factors
 }
 
+/// The first DOF of a cell along each axis.
+#[inline(always)]
+pub fn first_dofs<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
+    family: &A,
+    grid: &Grid<T, D>,
+    cell: &Cell<D>,
+) -> [usize; D] {
+    each(
+        #[inline(always)]
+        |axis| family.first_dof(axis_cell(grid, cell, axis)),
+    )
+}
+
 /// Point of `dof` in the product of `family` with itself.
-pub fn interpolation_point<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
+pub fn interpolation_point<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
     family: &A,
     grid: &Grid<T, D>,
     mut dof: usize,
@@ -153,7 +170,7 @@ pub fn interpolation_point<T: Scalar, const D: usize, const W: usize, A: AxisFam
 }
 
 /// DOFs along each axis of the product of `family` with itself, in the grid's window.
-pub fn dofs<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
+pub fn dofs<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
     family: &A,
     grid: &Grid<T, D>,
 ) -> [usize; D] {
@@ -179,7 +196,7 @@ pub fn dof_window<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
 }
 
 /// Visits the DOFs that a wall at `face` holds, of those in the grid's window.
-pub fn for_each_on_face<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
+pub fn for_each_on_face<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
     family: &A,
     grid: &Grid<T, D>,
     face: Face,
@@ -198,38 +215,43 @@ pub fn for_each_on_face<T: Scalar, const D: usize, const W: usize, A: AxisFamily
 
 /// Visits the product functions at `x`: values multiply, a gradient takes the slope along its own axis.
 #[inline(always)]
-pub fn for_each<T: Scalar, const D: usize, const W: usize, A: AxisFamily<T, W>>(
+pub fn for_each<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
     family: &A,
     grid: &Grid<T, D>,
     cell: &Cell<D>,
     x: &SVector<T, D>,
     f: impl FnMut(usize, T, SVector<T, D>),
 ) {
-    let cells = grid.cells();
-    let rows = std::array::from_fn(|axis| {
+    let rows = each(|axis| {
+        let at = axis_cell(grid, cell, axis);
         let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
-        family.row(cells[axis], cell[axis] as usize, unit)
+        (family.first_dof(at), family.evaluate(One, at, unit))
     });
     product_of_rows(grid, &rows, |cells| family.dofs_on_axis(cells), f);
 }
 
-/// Visits the products of `rows`, one per axis, on a lattice of `dofs(cells)` DOFs along an axis of so many cells.
+/// The functions of a cell of an axis at one point, after the first of their DOFs.
+pub(crate) type Row<T, const W: usize> = (usize, Functions<T, W>);
+
+/// Visits the products of `rows`, one an axis, on a lattice of `dofs(cells)` DOFs along an axis of so many cells.
 #[inline(always)]
-pub fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
+pub(crate) fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
     grid: &Grid<T, D>,
     rows: &[Row<T, W>; D],
     dofs: impl Fn(usize) -> usize,
     mut f: impl FnMut(usize, T, SVector<T, D>),
 ) {
     let inverse = grid.inverse_cell_size();
+    let first = grid.window().first();
+    let lattice = (first, grid.window().shape().map(dofs));
     if D == 1 {
+        let (dof, functions) = &rows[0];
         for k in 0..W {
-            let slope = SVector::repeat(rows[0].slope[k] * inverse[0]);
-            f(rows[0].dof[k], rows[0].value[k], slope);
+            let slope = SVector::repeat(functions.slope[k] * inverse[0]);
+            f(along(&lattice, 0, dof + k), functions.value[k], slope);
         }
         return;
     }
-    let lattice = (grid.window().first(), grid.window().shape().map(dofs));
     let mut k = [0; D];
     loop {
         let (dof, value, gradient) = product(&lattice, rows, &k, inverse);
@@ -240,25 +262,34 @@ pub fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
     }
 }
 
+/// Place of a DOF among those of the window along an axis. On a grid with fewer DOFs than a cell has functions those
+/// left over repeat the last one, with nothing.
+#[inline(always)]
+fn along<const D: usize>((first, shape): &(Cell<D>, [usize; D]), axis: usize, dof: usize) -> usize {
+    (dof - first[axis] as usize).min(shape[axis] - 1)
+}
+
 #[inline(always)]
 fn product<T: Scalar, const D: usize, const W: usize>(
-    (first, shape): &(Cell<D>, [usize; D]),
+    lattice: &(Cell<D>, [usize; D]),
     rows: &[Row<T, W>; D],
     k: &[usize; D],
     inverse: &SVector<T, D>,
 ) -> (usize, T, SVector<T, D>) {
+    let shape = &lattice.1;
     let (mut dof, mut value) = (0, T::one());
     for axis in (0..D).rev() {
-        dof = dof * shape[axis] + rows[axis].dof[k[axis]] - first[axis] as usize;
-        value *= rows[axis].value[k[axis]];
+        let (start, functions) = &rows[axis];
+        dof = dof * shape[axis] + along(lattice, axis, start + k[axis]);
+        value *= functions.value[k[axis]];
     }
     let gradient = SVector::from_fn(|a, _| {
         (0..D).fold(inverse[a], |g, axis| {
-            let row = &rows[axis];
+            let (_, functions) = &rows[axis];
             g * if axis == a {
-                row.slope[k[axis]]
+                functions.slope[k[axis]]
             } else {
-                row.value[k[axis]]
+                functions.value[k[axis]]
             }
         })
     });
@@ -280,31 +311,39 @@ pub(crate) fn advance<const D: usize>(k: &mut [usize; D], width: usize) -> bool 
 
 /// Makes a one-axis family a [`BasisFamily`](crate::basis::BasisFamily) in every dimension, by its tensor product.
 ///
-/// `width` is the `W` of its [`AxisFamily`], `degree` that of the polynomials which its values reproduce; `at_fixed_points` names the family whose
+/// `width` is the `W` of its [`AxisBasis`], `degree` that of the polynomials which its values reproduce; `at_fixed_points` names the family whose
 /// functions points that stand still see, if it is another one.
 #[macro_export]
 macro_rules! tensor_product_family {
     ($family:ty, width = $width:literal, degree = $degree:literal $(, at_fixed_points = $plain:expr)?) => {
         impl<T: $crate::scalar::Scalar, const D: usize> $crate::basis::BasisFamily<T, D> for $family {
-            const WIDTH: usize =
-                $crate::basis::tensor::width_in_lanes::<T, $width, $family>();
+            const WIDTH: usize = $crate::basis::tensor::width_in_packs($width);
 
-            const FOLLOWS_WINDOW: bool =
-                $crate::basis::tensor::follows_window::<T, $width, $family>();
+            const FOLLOWS_WINDOW: bool = true;
 
             const CONSTANT_GRADIENT: bool = D == 1 && $degree == 1 && $width == 2;
 
             const HOLDS_ABOUT: bool =
-                <$family as $crate::basis::AxisFamily<T, $width>>::HOLDS_ABOUT;
+                <$family as $crate::basis::AxisBasis<T, $width>>::HOLDS_ABOUT;
 
             #[inline(always)]
-            fn factors<V: $crate::lanes::SideBySide<T>>(
+            fn factors<K: $crate::simd::Lanes<T>>(
+                &self,
+                k: K,
+                grid: &$crate::grid::Grid<T, D>,
+                cell: &$crate::grid::Cell<D>,
+                unit: &[K::V; D],
+            ) -> $crate::basis::tensor::Factors<K::V, D> {
+                $crate::basis::tensor::factors::<T, D, $width, _, K>(self, k, grid, cell, unit)
+            }
+
+            #[inline(always)]
+            fn first_dofs(
                 &self,
                 grid: &$crate::grid::Grid<T, D>,
                 cell: &$crate::grid::Cell<D>,
-                unit: &[V; D],
-            ) -> $crate::basis::tensor::Factors<V, D> {
-                $crate::basis::tensor::factors::<T, D, $width, _, V>(self, grid, cell, unit)
+            ) -> [usize; D] {
+                $crate::basis::tensor::first_dofs::<T, D, $width, _>(self, grid, cell)
             }
 
             fn degree(&self) -> usize {

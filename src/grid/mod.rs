@@ -9,8 +9,11 @@ pub use window::Window;
 use nalgebra::SVector;
 
 use crate::error::GridError;
-use crate::lanes::Lanes;
 use crate::scalar::Scalar;
+use crate::simd::Packs;
+
+/// Cells between a particle and the border of the window: functions of a cell may reach into the next one.
+const SAFE: u32 = 1;
 
 /// Index of a cell along each axis.
 pub type Cell<const D: usize> = [u32; D];
@@ -186,17 +189,27 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
 
     /// The same of four points of which lane by lane `x` are the coordinates along each axis: whether the cell clearly holds all.
     #[inline(always)]
-    pub(crate) fn clearly_holds_all<V: Lanes<T, N>, const N: usize>(
+    pub(crate) fn clearly_holds_all<K: Packs<T, N>, const N: usize>(
         &self,
+        k: K,
         cell: &Cell<D>,
-        x: &[V; D],
+        x: &[K::V; D],
     ) -> bool {
-        (0..D).all(|axis| {
-            let index = V::splat(T::lit(f64::from(cell[axis])));
-            let unit = (x[axis] - V::splat(self.min[axis])) * V::splat(self.inverse_cell_size[axis]) - index;
+        for axis in 0..D {
+            let index = k.splat(T::lit(f64::from(cell[axis])));
+            let unit = (x[axis] - k.splat(self.min[axis])) * k.splat(self.inverse_cell_size[axis]) - index;
             let doubt = self.doubt[axis];
-            unit.are_between(V::splat(doubt), V::splat(T::one() - doubt))
-        })
+            if !k.are_between(unit, k.splat(doubt), k.splat(T::one() - doubt)) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Whether all that a particle of `cell` may see has numbers.
+    #[inline(always)]
+    pub(crate) fn is_safe(&self, cell: &Cell<D>) -> bool {
+        D == 1 || self.has_numbers(cell, SAFE)
     }
 
     /// Moves `x` a few roundings off an inner edge of its `cell`. Just there functions vanish whose slopes do not: a DOF that

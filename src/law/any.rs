@@ -9,6 +9,7 @@ use super::sweep::{Bodies, Sealed};
 use super::{ConstitutiveLaw, LawSweep};
 use crate::record::Record;
 use crate::scalar::Scalar;
+use crate::simd::with_features;
 
 /// Any law whose states are numbers, behind one type: a stepper of it is compiled once for all laws. A step asks
 /// it once for some hundred particles, which cannot be measured; the states take the room that the chosen law
@@ -135,34 +136,17 @@ where
         stresses: &mut [SMatrix<T, D, D>],
         states: &mut [T],
     ) {
-        let each = count::<T, L::State>();
-        if each == 0 {
-            // Nothing between two particles but the law itself: a compiler makes vectors of that.
-            for (increment, stress) in increments.iter().zip(stresses) {
-                self.update_over(dt, increment, stress, &mut L::State::default());
-            }
-            return;
-        }
-        let bodies = increments.iter().zip(stresses).zip(states.chunks_exact_mut(each));
-        for ((increment, stress), numbers) in bodies {
-            let mut state: L::State = state_of(numbers);
-            self.update_over(dt, increment, stress, &mut state);
-            put_state(&state, numbers);
-        }
+        with_features(
+            #[inline(always)]
+            move || carry_all(self, dt, increments, stresses, states),
+        );
     }
 
     fn are_known(&self, stresses: &[SMatrix<T, D, D>], states: &[T]) -> bool {
-        let each = count::<T, L::State>();
-        if each == 0 {
-            let nothing = L::State::default();
-            return stresses
-                .iter()
-                .fold(true, |known, stress| known & self.knows(stress, &nothing));
-        }
-        let bodies = stresses.iter().zip(states.chunks_exact(each));
-        bodies.fold(true, |known, (stress, numbers)| {
-            known & self.knows(stress, &state_of(numbers))
-        })
+        with_features(
+            #[inline(always)]
+            move || all_known(self, stresses, states),
+        )
     }
 
     fn update(&self, increment: &SMatrix<T, D, D>, stress: &mut SMatrix<T, D, D>, numbers: &mut [T]) {
@@ -336,3 +320,53 @@ macro_rules! any_law {
 }
 
 any_law!(f64, f32);
+
+// Functions of their own, because a compiler knows of what a function is given that slices are apart from each other.
+
+#[inline(always)]
+fn carry_all<T, const D: usize, L>(
+    law: &L,
+    dt: T,
+    increments: &[SMatrix<T, D, D>],
+    stresses: &mut [SMatrix<T, D, D>],
+    states: &mut [T],
+) where
+    T: Scalar,
+    L: ConstitutiveLaw<T, D, State: Record<T>>,
+{
+    let each = count::<T, L::State>();
+    if each == 0 {
+        // Nothing between two particles but the law itself: a compiler makes vectors of that.
+        for (increment, stress) in increments.iter().zip(stresses) {
+            law.update_over(dt, increment, stress, &mut L::State::default());
+        }
+        return;
+    }
+    let bodies = increments.iter().zip(stresses).zip(states.chunks_exact_mut(each));
+    for ((increment, stress), numbers) in bodies {
+        let mut state: L::State = state_of(numbers);
+        law.update_over(dt, increment, stress, &mut state);
+        put_state(&state, numbers);
+    }
+}
+
+#[inline(always)]
+fn all_known<T, const D: usize, L>(law: &L, stresses: &[SMatrix<T, D, D>], states: &[T]) -> bool
+where
+    T: Scalar,
+    L: ConstitutiveLaw<T, D, State: Record<T>>,
+{
+    let each = count::<T, L::State>();
+    let mut known = true;
+    if each == 0 {
+        let nothing = L::State::default();
+        for stress in stresses {
+            known &= ConstitutiveLaw::knows(law, stress, &nothing);
+        }
+        return known;
+    }
+    for (stress, numbers) in stresses.iter().zip(states.chunks_exact(each)) {
+        known &= ConstitutiveLaw::knows(law, stress, &state_of(numbers));
+    }
+    known
+}

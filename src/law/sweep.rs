@@ -5,6 +5,7 @@ use nalgebra::SMatrix;
 
 use super::ConstitutiveLaw;
 use crate::scalar::Scalar;
+use crate::simd::with_features;
 
 mod sealed {
     /// Only what is here says how states lie in memory.
@@ -120,6 +121,36 @@ fn own<S: Copy + Default>(state: &[S]) -> S {
     state.first().copied().unwrap_or_default()
 }
 
+// Both loops are functions of their own, because a compiler knows of what a function is given, and not of
+// what a structure holds, that slices are apart from each other and from the law: it need not read the
+// law's constants anew after each stress.
+
+#[inline(always)]
+pub(super) fn carry_all<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D> + ?Sized>(
+    law: &L,
+    dt: T,
+    increments: &[SMatrix<T, D, D>],
+    stresses: &mut [SMatrix<T, D, D>],
+    states: &mut [L::State],
+) {
+    for ((increment, stress), state) in increments.iter().zip(stresses).zip(states) {
+        law.update_over(dt, increment, stress, state);
+    }
+}
+
+#[inline(always)]
+fn all_known<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D> + ?Sized>(
+    law: &L,
+    stresses: &[SMatrix<T, D, D>],
+    states: &[L::State],
+) -> bool {
+    let mut known = true;
+    for (stress, state) in stresses.iter().zip(states) {
+        known &= ConstitutiveLaw::knows(law, stress, state);
+    }
+    known
+}
+
 impl<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> Sealed<T, D> for L {}
 
 impl<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> LawSweep<T, D> for L {
@@ -139,10 +170,6 @@ impl<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> LawSweep<T, D> for L {
         ConstitutiveLaw::large_strain(self)
     }
 
-    // Both loops are functions of their own, because a compiler knows of what a function is given, and not of
-    // what a structure holds, that slices are apart from each other and from the law: it need not read the
-    // law's constants anew after each stress.
-
     #[inline(never)]
     fn carry(
         &self,
@@ -151,17 +178,18 @@ impl<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>> LawSweep<T, D> for L {
         stresses: &mut [SMatrix<T, D, D>],
         states: &mut [L::State],
     ) {
-        for ((increment, stress), state) in increments.iter().zip(stresses).zip(states) {
-            self.update_over(dt, increment, stress, state);
-        }
+        with_features(
+            #[inline(always)]
+            move || carry_all(self, dt, increments, stresses, states),
+        );
     }
 
     #[inline(never)]
     fn are_known(&self, stresses: &[SMatrix<T, D, D>], states: &[L::State]) -> bool {
-        let bodies = stresses.iter().zip(states);
-        bodies.fold(true, |known, (stress, state)| {
-            known & ConstitutiveLaw::knows(self, stress, state)
-        })
+        with_features(
+            #[inline(always)]
+            move || all_known(self, stresses, states),
+        )
     }
 
     #[inline(always)]

@@ -74,6 +74,25 @@ impl<T: Send> Sliced for Rows<'_, T> {
     }
 }
 
+/// All of them are cut, the first one is asked for the number of items.
+impl<W: Sliced + Default, const N: usize> Sliced for [W; N] {
+    fn items(&self) -> usize {
+        self.first().map_or(0, Sliced::items)
+    }
+
+    fn split(self, spans: usize, items: usize) -> (Self, Self) {
+        let mut rest = self.map(|part| Some(part.split(spans, items)));
+        let later = std::array::from_fn(|n| match rest[n].take() {
+            Some((first, later)) => {
+                rest[n] = Some((first, W::default()));
+                later
+            }
+            None => W::default(),
+        });
+        (rest.map(|part| part.map_or_else(W::default, |(first, _)| first)), later)
+    }
+}
+
 macro_rules! tuple {
     ($($name:ident $field:tt),+) => {
         /// The first one is asked for the number of items.

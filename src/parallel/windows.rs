@@ -3,6 +3,7 @@
 use num_traits::Zero;
 
 use super::Sliced;
+use crate::simd::with_features;
 
 /// DOFs `first .. first + len` of one span; its values start at `offset` of all windows laid end to end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +18,16 @@ pub(crate) struct Windows<'a, Q> {
     spans: &'a [SpanWindow],
     values: &'a mut [Q],
     width: usize,
+}
+
+impl<Q> Default for Windows<'_, Q> {
+    fn default() -> Self {
+        Self {
+            spans: &[],
+            values: &mut [],
+            width: 0,
+        }
+    }
 }
 
 impl<'a, Q: Copy + Zero + Send> Windows<'a, Q> {
@@ -85,8 +96,16 @@ pub(crate) fn add_up<Q: Copy + Zero>(spans: &[SpanWindow], values: &[Q], sums: &
     for span in spans {
         let window = &values[span.offset * width..(span.offset + span.len) * width];
         let dofs = &mut sums[span.first * width..(span.first + span.len) * width];
-        for (sum, &value) in dofs.iter_mut().zip(window) {
-            *sum = *sum + value;
-        }
+        with_features(
+            #[inline(always)]
+            move || add(dofs, window),
+        );
+    }
+}
+
+#[inline(always)]
+fn add<Q: Copy + Zero>(sums: &mut [Q], values: &[Q]) {
+    for (sum, &value) in sums.iter_mut().zip(values) {
+        *sum = *sum + value;
     }
 }

@@ -10,7 +10,7 @@ mod start;
 pub(crate) use bins::settle;
 pub use bins::{Bins, Outside};
 pub use lattice::{Lattice, lattice};
-pub(crate) use movable::{Material, Movables};
+pub(crate) use movable::{Material, Movables, Places};
 
 use nalgebra::{SMatrix, SVector};
 

@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::grid::Cell;
 use crate::parallel::Sliced;
 
 /// What moves and deforms of particles.
@@ -24,29 +25,52 @@ pub(crate) struct Material<'a, T, const D: usize, S, P> {
     pub(crate) phase: &'a mut [P],
 }
 
-impl<T, const D: usize, S, P> Movables<'_, T, D, S, P> {
-    /// Where they are, and how far they have come since the start.
-    #[inline(always)]
-    pub(crate) fn places(&mut self) -> (&mut [SVector<T, D>], &mut [SVector<T, D>]) {
-        (self.position, self.displacement)
-    }
+/// Where particles are, and how far they have come since the start.
+pub(crate) struct Places<'a, T, const D: usize> {
+    pub(crate) positions: &'a mut [SVector<T, D>],
+    pub(crate) displacements: &'a mut [SVector<T, D>],
+    pub(crate) cells: &'a mut [Cell<D>],
+}
 
-    /// The same, and the data of the second phase.
-    #[inline(always)]
-    pub(crate) fn places_and_phase(&mut self) -> (&mut [SVector<T, D>], &mut [SVector<T, D>], &mut [P]) {
-        (self.position, self.displacement, self.phase)
-    }
+/// What all of them are made of, so many numbers a state.
+pub(crate) struct AllMaterial<'a, T, const D: usize, S, P> {
+    all: Material<'a, T, D, S, P>,
+    numbers_each: usize,
+}
 
+impl<T, const D: usize, S, P> AllMaterial<'_, T, D, S, P> {
     /// What `count` of them are made of, from index `first` on.
     #[inline(always)]
-    pub(crate) fn material(&mut self, first: usize, count: usize) -> Material<'_, T, D, S, P> {
+    pub(crate) fn some(&mut self, first: usize, count: usize) -> Material<'_, T, D, S, P> {
         let these = first..first + count;
         Material {
-            stress: &mut self.stress[these.clone()],
-            volume: &mut self.volume[these.clone()],
-            state: &mut self.state[first * self.numbers_each..][..count * self.numbers_each],
-            phase: &mut self.phase[these],
+            stress: &mut self.all.stress[these.clone()],
+            volume: &mut self.all.volume[these.clone()],
+            state: &mut self.all.state[first * self.numbers_each..][..count * self.numbers_each],
+            phase: &mut self.all.phase[these],
         }
+    }
+}
+
+impl<T, const D: usize, S, P> Movables<'_, T, D, S, P> {
+    /// Where they are, in these cells, and how far they have come since the start; and what they are made of.
+    pub(crate) fn split<'b>(
+        &'b mut self,
+        cells: &'b mut [Cell<D>],
+    ) -> (Places<'b, T, D>, AllMaterial<'b, T, D, S, P>) {
+        let places = Places {
+            positions: self.position,
+            displacements: self.displacement,
+            cells,
+        };
+        let all = Material {
+            stress: self.stress,
+            volume: self.volume,
+            state: self.state,
+            phase: self.phase,
+        };
+        let numbers_each = self.numbers_each;
+        (places, AllMaterial { all, numbers_each })
     }
 }
 

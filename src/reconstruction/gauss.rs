@@ -4,9 +4,9 @@ use nalgebra::SVector;
 
 use super::{Patch, Point};
 use crate::field::Field;
-use crate::lanes::{LANES, Lanes};
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Number, Packs, each};
 use crate::taylor::{MOST_COMPONENTS, Rights, taylor_functions};
 
 /// Least share of its mean that a fitted density keeps at the points.
@@ -95,24 +95,28 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
 
     /// In which of four cells that may have to be done.
     #[inline(always)]
-    pub(super) fn may_be_negative<V: Lanes<T>, Q: Field<T>, const C: usize>(
+    pub(super) fn may_be_negative<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
-        coefficients: &Rights<V, NB, C>,
+        k: K,
+        coefficients: &Rights<K::V, NB, C>,
     ) -> [bool; LANES] {
         let mut negative = [false; LANES];
-        let zero = V::splat(T::zero());
+        let zero = k.splat(T::zero());
         for q in (0..Q::COMPONENTS).filter(|&q| is_density::<T, Q>(q)) {
             let mut reach = zero;
-            for k in 1..NB {
-                reach = coefficients[k][q].abs().mul_add(V::splat(self.bounds[k]), reach);
+            for n in 1..NB {
+                reach = coefficients[n][q].abs().mul_add(k.splat(self.bounds[n]), reach);
             }
-            let beyond = reach.above(coefficients[0][q] * V::splat(may_lose::<T>()));
-            let half = V::splat(T::one() / T::lit(2.0));
-            if D == 1 && beyond.are_between(zero - half, half) {
+            let beyond = reach.above(coefficients[0][q] * k.splat(may_lose::<T>()));
+            let half = k.splat(T::one() / T::lit(2.0));
+            if D == 1 && k.are_between(beyond, zero - half, half) {
                 continue;
             }
-            let beyond = beyond.array();
-            negative = std::array::from_fn(|l| negative[l] || beyond[l] != T::zero());
+            let beyond = k.array(beyond);
+            negative = each(
+                #[inline(always)]
+                |l| negative[l] || beyond[l] != T::zero(),
+            );
         }
         negative
     }
@@ -131,20 +135,21 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
 
     /// Streams polynomials over four cells of the given volume: the number of the point, then the values times the weight.
     #[inline(always)]
-    pub(super) fn emit_lanes<V: Lanes<T>, const C: usize>(
+    pub(super) fn emit_lanes<K: Packs<T>, const C: usize>(
         &self,
+        k: K,
         volume: T,
-        coefficients: &Rights<V, NB, C>,
+        coefficients: &Rights<K::V, NB, C>,
         components: usize,
-        sink: &mut impl FnMut(usize, &[V; MOST_COMPONENTS]),
+        sink: &mut impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) {
         for (number, node) in self.nodes.iter().enumerate() {
-            let weight = V::splat(volume * node.share);
-            let mut values = [V::splat(T::zero()); MOST_COMPONENTS];
-            for k in (0..NB).rev() {
-                let psi = V::splat(node.psi[k]);
+            let weight = k.splat(volume * node.share);
+            let mut values = [k.splat(T::zero()); MOST_COMPONENTS];
+            for n in (0..NB).rev() {
+                let psi = k.splat(node.psi[n]);
                 for q in 0..components {
-                    values[q] = psi.mul_add(coefficients[k][q], values[q]);
+                    values[q] = psi.mul_add(coefficients[n][q], values[q]);
                 }
             }
             for q in 0..components {

@@ -28,9 +28,9 @@ use nalgebra::SVector;
 use crate::error::SetupError;
 use crate::field::Field;
 use crate::grid::{Cell, Grid};
-use crate::lanes::{LANES, Lanes};
 use crate::particles::Bins;
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Packs, each};
 use crate::taylor::MOST_COMPONENTS;
 
 /// Where the particles are: all that a reconstruction needs to know besides the values.
@@ -114,10 +114,13 @@ pub(crate) fn four_cells<T: Scalar, const D: usize>(
         let first = cloud.grid.window().first()[0];
         return [a, b, c, d].map(|number| (number as usize, [first + number; D]));
     }
-    std::array::from_fn(|l| {
-        let number = occupied[l.min(occupied.len() - 1)] as usize;
-        (number, cloud.grid.cell(number))
-    })
+    each(
+        #[inline(always)]
+        |l| {
+            let number = occupied[l.min(occupied.len() - 1)] as usize;
+            (number, cloud.grid.cell(number))
+        },
+    )
 }
 
 /// What became of four cells that were streamed at once.
@@ -283,13 +286,14 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     /// `cells`, places in the list of occupied ones from a multiple of four on: one cell in each lane, the number of the point and the components of the
     /// value. `value` is that of a particle: in the first case its density. Only asked where [`Reconstruction::BY_FOUR`]; returns in
     /// which cells it failed (those that a surface cuts always), so that they must be streamed by [`Reconstruction::integrate_hard`].
-    fn integrate_four<V: Lanes<T>, Q: Field<T>>(
+    fn integrate_four<K: Packs<T>, Q: Field<T>>(
         &self,
+        _k: K,
         _cloud: &Cloud<'_, T, D>,
         _cells: Range<usize>,
         _conserve: bool,
         _value: &impl Values<T, Q>,
-        _sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+        _sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {
         const { assert!(!Self::BY_FOUR, "BY_FOUR wants an own `integrate_four`") };
         Four::default()

@@ -18,9 +18,9 @@ use super::gauss::GaussRule;
 use super::{Cloud, Four, Patch, Point, Reconstruction, Values};
 use crate::field::Field;
 use crate::grid::Cell;
-use crate::lanes::{LANES, Lanes};
 use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Packs, each};
 use crate::taylor::{
     CellFit, FEW_COMPONENTS, FourSums, Gram, MOST_COMPONENTS, are_few, default_tolerance, taylor_functions,
 };
@@ -299,44 +299,51 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
 
     /// [`Reconstruction::integrate_four`] of a field of not more than `C` components.
     #[inline(always)]
-    fn integrate_few<V: Lanes<T>, Q: Field<T>, const C: usize>(
+    fn integrate_few<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         cells: Range<usize>,
         conserve: bool,
         value: &impl Values<T, Q>,
-        mut sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+        mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {
         let group = CellGroup::new(cloud, cells.clone());
         let volume = cloud.grid.cell_volume();
         let first = usize::from(conserve);
-        let mut sums: FourSums<V, NB, C> = if conserve {
-            group.sums::<Conserved, T, V, Q, NB, C>(cloud, cells, value, cloud.volumes)
+        let mut sums: FourSums<K::V, NB, C> = if conserve {
+            group.sums::<Conserved, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes)
         } else {
-            group.sums::<Free, T, V, Q, NB, C>(cloud, cells, value, cloud.volumes)
+            group.sums::<Free, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes)
         };
-        let mut mean = [V::splat(T::zero()); C];
+        let mut mean = [k.splat(T::zero()); C];
         if conserve {
-            let whole = V::splat(T::one() / volume);
+            let whole = k.splat(T::one() / volume);
             for q in 0..Q::COMPONENTS {
                 mean[q] = sums.right[0][q] * whole;
             }
             sums.take_out(&mean, Q::COMPONENTS);
         }
-        let mut fits = sums.fit::<T, D>(first, &group.counts, self.tolerance, Q::COMPONENTS);
+        let mut fits = sums.fit::<T, K, D>(k, first, &group.counts, self.tolerance, Q::COMPONENTS);
         let mut hard = fits.hard;
         let mut negative = false;
         if conserve {
             fits.coefficients[0] = mean;
-            let any = self.rule.may_be_negative::<V, Q, C>(&fits.coefficients);
+            let any = self.rule.may_be_negative::<K, Q, C>(k, &fits.coefficients);
             negative = any != [false; LANES];
-            hard = std::array::from_fn(|l| hard[l] || any[l]);
+            hard = each(
+                #[inline(always)]
+                |l| hard[l] || any[l],
+            );
         }
         if !cloud.cuts.is_empty() {
-            hard = std::array::from_fn(|l| hard[l] || cloud.is_cut(&group.cells[l]));
+            hard = each(
+                #[inline(always)]
+                |l| hard[l] || cloud.is_cut(&group.cells[l]),
+            );
         }
         self.rule
-            .emit_lanes(volume, &fits.coefficients, Q::COMPONENTS, &mut sink);
+            .emit_lanes(k, volume, &fits.coefficients, Q::COMPONENTS, &mut sink);
         let mut four = Four::default();
         // What usually is so, and sooner found out than whether each cell is hard.
         if D == 1 && fits.are_full && !negative && cloud.cuts.is_empty() {
@@ -523,20 +530,21 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
     }
 
     #[inline(always)]
-    fn integrate_four<V: Lanes<T>, Q: Field<T>>(
+    fn integrate_four<K: Packs<T>, Q: Field<T>>(
         &self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         cells: Range<usize>,
         conserve: bool,
         value: &impl Values<T, Q>,
-        sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+        sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {
         if const { are_few::<T, Q, D>() && Q::COMPONENTS == 1 } {
-            self.integrate_few::<V, Q, 1>(cloud, cells, conserve, value, sink)
+            self.integrate_few::<K, Q, 1>(k, cloud, cells, conserve, value, sink)
         } else if const { are_few::<T, Q, D>() } {
-            self.integrate_few::<V, Q, FEW_COMPONENTS>(cloud, cells, conserve, value, sink)
+            self.integrate_few::<K, Q, FEW_COMPONENTS>(k, cloud, cells, conserve, value, sink)
         } else {
-            self.integrate_few::<V, Q, MOST_COMPONENTS>(cloud, cells, conserve, value, sink)
+            self.integrate_few::<K, Q, MOST_COMPONENTS>(k, cloud, cells, conserve, value, sink)
         }
     }
 

@@ -3,8 +3,8 @@
 use nalgebra::SVector;
 
 use crate::field::{Field, MassMomentum};
-use crate::lanes::{LANES, Lanes};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Packs, each, in_lanes};
 
 /// A field at the particles, by their numbers: any function of those, or what knows more ways to be asked.
 pub trait Values<T: Scalar, Q: Field<T>> {
@@ -13,8 +13,12 @@ pub trait Values<T: Scalar, Q: Field<T>> {
 
     /// The components, `C` at most, of the values at four particles that follow each other, one particle in each lane.
     #[inline(always)]
-    fn four<V: Lanes<T>, const C: usize>(&self, first: usize) -> [V; C] {
-        lanes_of(|l| self.at(first + l))
+    fn four<K: Packs<T>, const C: usize>(&self, k: K, first: usize) -> [K::V; C] {
+        lanes_of(
+            k,
+            #[inline(always)]
+            |l| self.at(first + l),
+        )
     }
 }
 
@@ -36,12 +40,21 @@ impl<T: Scalar, Q: Field<T>> Values<T, Q> for Stored<'_, Q> {
     }
 
     #[inline(always)]
-    fn four<V: Lanes<T>, const C: usize>(&self, first: usize) -> [V; C] {
-        let mut components = [V::splat(T::zero()); C];
+    fn four<K: Packs<T>, const C: usize>(&self, k: K, first: usize) -> [K::V; C] {
+        let mut components = [k.splat(T::zero()); C];
         for q in 0..Q::COMPONENTS.min(C) {
-            components[q] = four_of(self.0, first, components[q], |four| {
-                V::new(std::array::from_fn(|l| four[l].component(q)))
-            });
+            components[q] = four_of(
+                self.0,
+                first,
+                components[q],
+                #[inline(always)]
+                |four| {
+                    k.new(in_lanes(
+                        #[inline(always)]
+                        |l| four[l].component(q),
+                    ))
+                },
+            );
         }
         components
     }
@@ -69,11 +82,11 @@ impl<T: Scalar, const D: usize> Values<T, MassMomentum<T, D>> for Densities<'_, 
     }
 
     #[inline(always)]
-    fn four<V: Lanes<T>, const C: usize>(&self, first: usize) -> [V; C] {
-        let density: V = four_numbers::<T, V>(self.masses, first) / four_numbers(self.volumes, first);
+    fn four<K: Packs<T>, const C: usize>(&self, k: K, first: usize) -> [K::V; C] {
+        let density = four_numbers::<T, K>(k, self.masses, first) / four_numbers::<T, K>(k, self.volumes, first);
         let mut components = [density; C];
         for a in 0..D.min(C - 1) {
-            components[1 + a] = four_components::<T, V, D>(self.velocities, first, a) * density;
+            components[1 + a] = four_components::<T, K, D>(k, self.velocities, first, a) * density;
         }
         components
     }
@@ -92,31 +105,51 @@ pub(super) fn four_of<A, V>(values: &[A], first: usize, nothing: V, make: impl F
 
 /// Four numbers that follow each other.
 #[inline(always)]
-pub(super) fn four_numbers<T: Scalar, V: Lanes<T>>(values: &[T], first: usize) -> V {
-    four_of(values, first, V::splat(T::zero()), |&four| V::new(four))
+pub(super) fn four_numbers<T: Scalar, K: Packs<T>>(k: K, values: &[T], first: usize) -> K::V {
+    four_of(
+        values,
+        first,
+        k.splat(T::zero()),
+        #[inline(always)]
+        |&four| k.new(four),
+    )
 }
 
 /// A component of four vectors that follow each other.
 #[inline(always)]
-pub(super) fn four_components<T: Scalar, V: Lanes<T>, const D: usize>(
+pub(super) fn four_components<T: Scalar, K: Packs<T>, const D: usize>(
+    k: K,
     vectors: &[SVector<T, D>],
     first: usize,
     component: usize,
-) -> V {
-    four_of(vectors, first, V::splat(T::zero()), |four| {
-        V::new(std::array::from_fn(|l| four[l][component]))
-    })
+) -> K::V {
+    four_of(
+        vectors,
+        first,
+        k.splat(T::zero()),
+        #[inline(always)]
+        |four| {
+            k.new(in_lanes(
+                #[inline(always)]
+                |l| four[l][component],
+            ))
+        },
+    )
 }
 
 /// The components of four values, the `l`-th of which is `value(l)`.
 #[inline(always)]
-pub(super) fn lanes_of<T: Scalar, V: Lanes<T>, Q: Field<T>, const C: usize>(
+pub(super) fn lanes_of<T: Scalar, K: Packs<T>, Q: Field<T>, const C: usize>(
+    k: K,
     value: impl Fn(usize) -> Q,
-) -> [V; C] {
-    let values: [Q; LANES] = std::array::from_fn(value);
-    let mut components = [V::splat(T::zero()); C];
+) -> [K::V; C] {
+    let values: [Q; LANES] = each(value);
+    let mut components = [k.splat(T::zero()); C];
     for q in 0..Q::COMPONENTS {
-        components[q] = V::new(std::array::from_fn(|l| values[l].component(q)));
+        components[q] = k.new(in_lanes(
+            #[inline(always)]
+            |l| values[l].component(q),
+        ));
     }
     components
 }

@@ -8,6 +8,7 @@ use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::simd::with_features;
 use nalgebra::SVector;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
@@ -19,17 +20,15 @@ where
     P: Phase<T, D>,
 {
     /// Turns forces into accelerations; a DOF that no particle reaches has none.
-    pub(super) fn accelerate(&mut self, forcing: &Forcing<T, D>) {
+    pub(super) fn accelerate_one(&mut self, forcing: &Forcing<T, D>) {
         if R::PARTICLE_MATRIX {
             self.solve_accelerations(forcing);
         } else {
-            for (force, &mass) in self.dofs.force.iter_mut().zip(&self.dofs.mass) {
-                *force = if mass > T::zero() {
-                    *force / mass + forcing.body_force
-                } else {
-                    SVector::zeros()
-                };
-            }
+            let (forces, masses, body_force) = (&mut self.dofs.force[..], &self.dofs.mass[..], forcing.body_force);
+            with_features(
+                #[inline(always)]
+                move || divide_by_masses(forces, masses, body_force),
+            );
         }
         self.hold_accelerations(forcing);
     }
@@ -45,6 +44,22 @@ where
         self.dofs
             .solve(Unknown::Acceleration, self.velocity_mass, &walls, true, &pick);
         self.note_inertia_of_held(forcing);
+    }
+}
+
+/// Forces to accelerations with lumped masses.
+#[inline(always)]
+fn divide_by_masses<T: Scalar, const D: usize>(
+    forces: &mut [SVector<T, D>],
+    masses: &[T],
+    body_force: SVector<T, D>,
+) {
+    for (force, &mass) in forces.iter_mut().zip(masses) {
+        *force = if mass > T::zero() {
+            *force / mass + body_force
+        } else {
+            SVector::zeros()
+        };
     }
 }
 

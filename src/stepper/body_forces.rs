@@ -29,8 +29,11 @@ where
         }
     }
 
-    /// `f_i += sum_p m_p b_p phi_i(x_p)`, of one phase.
+    /// `f_i += sum_p m_p b_p phi_i(x_p)`.
     pub(super) fn add_body_forces(&mut self) {
+        if P::FLOWS {
+            return self.add_body_forces_to_both();
+        }
         let (basis, grid, force) = (&self.basis, &self.grid, &mut self.dofs.force);
         let load = &mut self.balance.load;
         let particles = self.particles.mass.iter().zip(&self.particles.position);
@@ -43,7 +46,7 @@ where
 
     /// The same of two: the mixture feels `(m_s + n m_w) b`, the liquid, whose balance is per porosity `n`,
     /// feels `m_w b`.
-    pub(super) fn add_body_forces_to_both(&mut self) {
+    fn add_body_forces_to_both(&mut self) {
         let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
         let (whole, liquid) = (&mut self.dofs.force, &mut self.liquid.force);
         let inverse = T::one() / phase.porosity();

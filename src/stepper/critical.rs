@@ -2,8 +2,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::forces::Assembly;
+use super::fitted::Fitted;
 use super::liquid::Coupled;
+use super::sums::Targets;
 use super::{FaceCondition, Forcing, Setup, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Face};
@@ -169,7 +170,7 @@ where
         let least = across * across * T::lit(ROUND_OFF);
         let probe = self;
         probe.prepare();
-        probe.lump_mass();
+        probe.sum_solid_masses();
         let rest = at_rest(forcing);
         let scale = probe.probe_velocity()?;
         let (mut before, mut eigenvalue) = (T::zero(), T::zero());
@@ -214,7 +215,7 @@ where
 
     /// Replaces the velocities `v` by `G v` and returns `|G v| / |v|`, `|v| = size`.
     fn apply(&mut self, rest: &Forcing<T, D>, size: T) -> Option<T> {
-        self.map_momentum();
+        self.map_solid();
         self.divide_by_mass(rest, true);
         let mut rates = vec![SMatrix::zeros(); self.particles.len()];
         let parallel = rates.len() > PARTICLES && many_threads();
@@ -224,19 +225,19 @@ where
                 *rate = self.stress_rate(p, &mut state);
             }
         });
-        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
-        let assembly = Assembly {
-            by_four: self.by_four(),
+        let by_four = self.by_four();
+        let fitted = Fitted {
             basis: &self.basis,
+            cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
             reconstruction: &mut self.reconstruction,
-            cloud,
             spans: &mut self.spans,
-            force: &mut self.dofs.force,
+            by_four,
         };
-        assembly.internal_force(Stored(&rates));
-        self.accelerate(rest);
+        let force = Targets::<T, D, 0, 0, 1>::of_forces([&mut self.dofs.force]);
+        fitted.forces::<1>(Stored(&rates), force);
+        self.accelerate_one(rest);
         self.particles.velocity.fill(SVector::zeros());
-        self.update_particle_velocities(-T::one());
+        self.kick_phases::<1, 0>(-T::one());
         let eigenvalue = rms(&self.particles.velocity) / size;
         eigenvalue.is_finite().then_some(eigenvalue)
     }

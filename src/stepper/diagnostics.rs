@@ -4,12 +4,14 @@ use nalgebra::SVector;
 
 use super::Stepper;
 use super::contact::WallAction;
+use super::spans::Totals;
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
 use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::transfer::Momentum;
 
 /// Largest errors, over all steps, of the mapped DOF totals against the particle totals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,98 +124,29 @@ impl<T: Scalar> Diagnostics<T> {
         self.unsolved_contacts += usize::from(!action.solved);
     }
 
-    /// Compares the mapped totals with those of the particles.
-    pub(super) fn record<const D: usize>(&mut self, particles: &Sums<T, D>, mapped: MassMomentum<T, D>) {
-        self.conservation.record(self.total_mass, particles, mapped);
-    }
-
-    /// Compares the mapped totals of both phases with those of the particles.
-    pub(super) fn record_both<const D: usize>(
+    /// Compares the mapped totals of the solid, and of the liquid where one flows, with those of the particles.
+    pub(super) fn record<const D: usize>(
         &mut self,
         totals: &Totals<T, D>,
         [solid, liquid]: [MassMomentum<T, D>; 2],
     ) {
-        self.record(&totals.solid, solid);
+        self.conservation
+            .record(self.total_mass, &totals.momenta[0], solid);
         if let Some(errors) = &mut self.liquid_conservation {
-            errors.record(totals.liquid_mass, &totals.liquid, liquid);
+            errors.record(totals.liquid_mass, &totals.momenta[1], liquid);
         }
-    }
-}
-
-/// Momentum of the particles, and the sum of its sizes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Sums<T, const D: usize> {
-    momentum: SVector<T, D>,
-    scale: T,
-}
-
-impl<T: Scalar, const D: usize> Sums<T, D> {
-    pub(super) fn zero() -> Self {
-        Self {
-            momentum: SVector::zeros(),
-            scale: T::zero(),
-        }
-    }
-
-    /// Already added up.
-    pub(super) fn new(momentum: SVector<T, D>, scale: T) -> Self {
-        Self { momentum, scale }
-    }
-
-    /// Momentum of the particles.
-    pub(super) fn momentum(&self) -> SVector<T, D> {
-        self.momentum
-    }
-
-    /// Sum of the sizes of their momenta.
-    pub(super) fn scale(&self) -> T {
-        self.scale
-    }
-
-    /// Adds the momentum of one particle.
-    #[inline(always)]
-    pub(super) fn add(&mut self, part: SVector<T, D>) {
-        self.momentum += part;
-        self.scale += if D == 1 { part[0].abs() } else { part.norm() };
-    }
-
-    /// Both together.
-    pub(super) fn with(mut self, other: &Self) -> Self {
-        self.momentum += other.momentum;
-        self.scale += other.scale;
-        self
-    }
-}
-
-/// Of both phases.
-pub(super) struct Totals<T, const D: usize> {
-    solid: Sums<T, D>,
-    liquid: Sums<T, D>,
-    liquid_mass: T,
-}
-
-impl<T: Scalar, const D: usize> Totals<T, D> {
-    pub(super) fn zero() -> Self {
-        Self {
-            solid: Sums::zero(),
-            liquid: Sums::zero(),
-            liquid_mass: T::zero(),
-        }
-    }
-
-    /// Adds the momenta and the liquid's mass of one particle.
-    #[inline(always)]
-    pub(super) fn add(&mut self, solid: SVector<T, D>, liquid: SVector<T, D>, liquid_mass: T) {
-        self.solid.add(solid);
-        self.liquid.add(liquid);
-        self.liquid_mass += liquid_mass;
     }
 }
 
 impl<T: Scalar> Conservation<T> {
     /// Compares the mapped totals with those of the particles.
-    fn record<const D: usize>(&mut self, total_mass: T, sums: &Sums<T, D>, mapped: MassMomentum<T, D>) {
-        let Sums { momentum, scale } = *sums;
+    fn record<const D: usize>(
+        &mut self,
+        total_mass: T,
+        particles: &Momentum<T, D>,
+        mapped: MassMomentum<T, D>,
+    ) {
+        let Momentum { momentum, scale } = *particles;
         let mass = (mapped.mass - total_mass).abs() / total_mass;
         self.mass = self.mass.max(mass);
         let difference = (mapped.momentum - momentum).norm();

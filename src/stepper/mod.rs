@@ -17,25 +17,22 @@
 //! ([`Stepper::step_with_kick`]).
 
 mod acceleration;
-mod advance;
 mod balance;
 mod body_forces;
 mod bound;
-mod by_four;
-mod cell_sums;
 mod checkpoint;
 mod contact;
 mod critical;
-mod deform;
 mod diagnostics;
 mod dofs;
+mod drift;
 mod faces;
+mod fitted;
 mod forces;
 mod forcing;
 mod ghost;
-mod lanes;
+mod kick;
 mod liquid;
-mod mapping;
 mod material_fields;
 mod matrix;
 mod order;
@@ -44,6 +41,8 @@ mod polynomial;
 mod relax;
 mod simulation;
 mod spans;
+mod step;
+mod sums;
 mod velocity;
 mod window;
 
@@ -54,7 +53,6 @@ pub use material_fields::MaterialFields;
 pub use simulation::Simulation;
 
 use nalgebra::{SMatrix, SVector};
-use num_traits::Zero;
 
 use crate::basis::BasisFamily;
 use crate::error::{SetupError, StepError};
@@ -66,10 +64,11 @@ use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Crossed, Cut, Reconstruction};
 use crate::scalar::Scalar;
+use crate::transfer;
 use dofs::Dofs;
 use order::Order;
 use pairs::Pairs;
-use spans::Spans;
+use spans::{SCALARS, Spans, VECTORS};
 
 /// All that a [`Stepper`] is made of.
 #[derive(Clone, Debug)]
@@ -120,9 +119,6 @@ where
     liquid: Dofs<T, D>,
     /// Drag of the DOFs (kg/s in 3-D), empty where no liquid flows.
     drag: Vec<T>,
-    /// Sums of both phases side by side, and what moves the particles; empty where no liquid flows.
-    sums: Vec<liquid::Sums<T, D>>,
-    motion: Vec<[SVector<T, D>; 2]>,
     /// Of no DOF but for a liquid that flows with the particles' consistent matrices.
     joint: liquid::Joint<T, D>,
     /// What surfaces demand that the liquid does not pass.
@@ -206,10 +202,7 @@ where
             true => window::lay(grid, bins.cells()),
             false => grid,
         };
-        let order = match P::FLOWS {
-            true => Order::default(),
-            false => Order::new(&grid, bins.cells()),
-        };
+        let order = Order::new(&grid, bins.cells());
         // Overwritten walls would tear at an acceleration that knows nothing of them.
         let velocity_mass = match R::PARTICLE_MATRIX {
             true => VelocityMass::Constrained,
@@ -245,8 +238,6 @@ where
             dofs: Dofs::none(),
             liquid: Dofs::none(),
             drag: Vec::new(),
-            sums: Vec::new(),
-            motion: Vec::new(),
             joint: liquid::Joint::none(),
             seal,
             spans,
@@ -282,8 +273,6 @@ where
             self.liquid = Dofs::new(basis, grid, own_mass, R::PARTICLE_MATRIX);
             let count = basis.dof_count(grid);
             self.drag = vec![T::zero(); count];
-            self.sums = vec![liquid::Sums::zero(); count];
-            self.motion = vec![[SVector::zeros(); 2]; count];
             if R::PARTICLE_MATRIX {
                 self.joint = liquid::Joint::new(basis, grid, self.particles.len());
             }
@@ -295,10 +284,9 @@ where
     /// before the first step: [`Stepper::bytes`] is right from the start.
     fn allocate(&mut self) {
         self.prepare();
-        if !P::FLOWS {
-            let dofs = self.dofs.mass.len();
-            self.spans.allocate(R::PLAIN, R::BY_CELLS, dofs);
-        }
+        let dofs = self.dofs.mass.len();
+        let each = if P::FLOWS { [SCALARS, VECTORS] } else { [1, 3] };
+        self.spans.allocate(each, R::BY_CELLS, dofs);
         if R::AMOUNTS_AT_PARTICLES {
             return;
         }
@@ -306,7 +294,7 @@ where
             self.map_both_before(T::zero(), &Forcing::none());
             self.liquid.velocity.fill(SVector::zeros());
         } else {
-            self.map_momentum();
+            self.map_momenta();
         }
         self.dofs.velocity.fill(SVector::zeros());
     }
@@ -380,46 +368,6 @@ where
         are_many::<D>(self.particles.len(), PARTICLES) || are_many::<D>(cells, CELLS)
     }
 
-    /// The step on this thread, which others of its pool may help.
-    fn step_here(
-        &mut self,
-        [kick, dt]: [T; 2],
-        forcing: &Forcing<T, D>,
-        measure: bool,
-    ) -> Result<Energy<T>, StepError> {
-        self.prepare();
-        if !measure {
-            self.kick(kick, forcing);
-            return self.drift(dt).map(|()| Energy::none());
-        }
-        let (strain, before) = (self.strain_energy(), self.velocities());
-        self.kick(kick, forcing);
-        let kinetic = self.kinetic_energy_across(&before);
-        self.drift(dt)?;
-        Ok(Energy { kinetic, strain })
-    }
-
-    /// Velocities of particles and DOFs.
-    fn kick(&mut self, kick: T, forcing: &Forcing<T, D>) {
-        if P::FLOWS {
-            self.assemble_both(kick, forcing);
-            self.accelerate_both(kick, forcing);
-            self.update_both_velocities(kick, forcing);
-        } else {
-            self.begin_balance();
-            self.assemble(forcing);
-            self.accelerate(forcing);
-            self.update_velocities(kick, forcing);
-        }
-    }
-
-    /// Positions, strains and stresses of the particles.
-    fn drift(&mut self, dt: T) -> Result<(), StepError> {
-        self.steps += 1;
-        self.time += dt;
-        self.advance(dt)
-    }
-
     /// Takes in where the particles are.
     fn prepare(&mut self) {
         if self.strayed {
@@ -452,8 +400,8 @@ where
 
     /// Whether fits are made and integrated for four cells at a time, so that nothing of them need be kept.
     fn by_four(&self) -> bool {
-        let can = const { !P::FLOWS && lanes::fit::<T, D, B, R>() };
-        can && (1..=lanes::MOST_POINTS).contains(&self.reconstruction.line().count())
+        let can = const { transfer::fit::<T, D, B, R>() };
+        can && (1..=transfer::MOST_POINTS).contains(&self.reconstruction.line().count())
     }
 
     /// Puts the particles in the order of their cells.
@@ -570,7 +518,6 @@ where
     /// allocate nothing beyond, but the first one in which walls rub that did not before, and where particles move so far through
     /// a large grid that its [`Window`](crate::grid::Window) moves with them.
     pub fn bytes(&self) -> usize {
-        let both = size_of::<T>() + size_of::<liquid::Sums<T, D>>() + 2 * size_of::<SVector<T, D>>();
         size_of::<Self>()
             + self.particles.bytes()
             + self.bins.bytes()
@@ -589,7 +536,7 @@ where
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()
             + self.joint.bytes()
             + self.seal.bytes()
-            + both * self.drag.len()
+            + size_of::<T>() * self.drag.len()
     }
 
     /// [`Stepper::bytes`] over the number of particles.

@@ -156,15 +156,15 @@ where
         if !P::FLOWS {
             return Vec::new();
         }
-        let data = self.particles.phase.iter();
-        data.map(|data| {
+        let mut liquid = vec![PoreLiquid::default(); self.particles.len()];
+        for (place, data) in self.particles.phase.iter().enumerate() {
             let PoreLiquid { velocity, pressure } = self.phase.liquid(data);
-            PoreLiquid {
+            liquid[self.order.number(place)] = PoreLiquid {
                 velocity: velocity.map(T::primal),
                 pressure: pressure.primal(),
-            }
-        })
-        .collect()
+            };
+        }
+        liquid
     }
 
     fn material_fields(&self) -> MaterialFields {

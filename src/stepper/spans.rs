@@ -4,14 +4,13 @@ use std::ops::Range;
 
 use nalgebra::SVector;
 
-use super::diagnostics::Sums;
-use super::lanes;
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::grid::Grid;
 use crate::parallel::{CELLS, PARTICLES, SpanWindow, fit, worth_sharing};
 use crate::particles::Bins;
 use crate::scalar::Scalar;
+use crate::transfer::{self, Momentum};
 
 /// Windows of the spans of particles and of occupied cells, sums in them, and partial results.
 #[derive(Clone, Debug)]
@@ -29,13 +28,48 @@ pub(super) struct Spans<T, const D: usize> {
     pub(super) unknown: bool,
     /// Of how many shortest spans those of particles and of cells are to be made, where that is known beforehand.
     pub(super) told: Option<[usize; 2]>,
-    pub(super) scalars: Vec<T>,
-    pub(super) vectors: Vec<SVector<T, D>>,
-    pub(super) matrices: Vec<T>,
-    pub(super) sums: Vec<Sums<T, D>>,
+    pub(super) store: Store<T, D>,
+    pub(super) totals: Vec<Totals<T, D>>,
     pub(super) moved: Vec<Moved<T>>,
     /// Of spans of cells, how many were fitted without the full set of functions.
     pub(super) reduced: Vec<usize>,
+}
+
+/// Room for the sums of windows: of so many scalars and vectors a DOF, and of rows of a matrix.
+#[derive(Clone, Debug)]
+pub(super) struct Store<T, const D: usize> {
+    pub(super) scalars: [Vec<T>; SCALARS],
+    pub(super) vectors: [Vec<SVector<T, D>>; VECTORS],
+    pub(super) matrices: [Vec<T>; 2],
+}
+
+/// Scalars of a DOF: masses of two phases, and their drag.
+pub(super) const SCALARS: usize = 3;
+/// Vectors of a DOF: momenta of two phases, and forces on them.
+pub(super) const VECTORS: usize = 4;
+
+/// Momenta of the particles of a span, of both phases, and the mass of the liquid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Totals<T, const D: usize> {
+    pub(super) momenta: [Momentum<T, D>; 2],
+    pub(super) liquid_mass: T,
+}
+
+impl<T: Scalar, const D: usize> Totals<T, D> {
+    pub(super) fn zero() -> Self {
+        Self {
+            momenta: [Momentum::zero(); 2],
+            liquid_mass: T::zero(),
+        }
+    }
+
+    fn with(self, other: &Self) -> Self {
+        let [solid, liquid] = self.momenta;
+        Self {
+            momenta: [solid.with(&other.momenta[0]), liquid.with(&other.momenta[1])],
+            liquid_mass: self.liquid_mass + other.liquid_mass,
+        }
+    }
 }
 
 /// What became of the particles of a span that moved.
@@ -114,10 +148,12 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             stale: true,
             unknown: true,
             told: None,
-            scalars: Vec::new(),
-            vectors: Vec::new(),
-            matrices: Vec::new(),
-            sums: vec![Sums::zero(); spans],
+            store: Store {
+                scalars: [const { Vec::new() }; SCALARS],
+                vectors: [const { Vec::new() }; VECTORS],
+                matrices: [const { Vec::new() }; 2],
+            },
+            totals: vec![Totals::zero(); spans],
             moved: vec![Moved::default(); spans],
             reduced: Vec::new(),
         }
@@ -135,7 +171,7 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             return;
         }
         self.stale = false;
-        if std::mem::take(&mut self.unknown) || !lanes::apply::<T, D, B>() {
+        if std::mem::take(&mut self.unknown) || !transfer::in_packs::<T, D, B>() {
             self.bound(grid, bins);
         }
         let places = Places { basis, grid };
@@ -165,20 +201,34 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
         }
     }
 
-    /// Allocates what passes will need: sums of vectors over particles, over cells, or neither.
-    pub(super) fn allocate(&mut self, particles: bool, cells: bool, dofs: usize) {
-        fit(&self.particles, &mut self.scalars, 1);
-        if particles {
-            fit(&self.particles, &mut self.vectors, 1);
+    /// Allocates what sweeps will need: so many scalars and vectors of each DOF, summed over particles and, for fits, over
+    /// cells.
+    pub(super) fn allocate(&mut self, [scalars, vectors]: [usize; 2], fits: bool, dofs: usize) {
+        let Store {
+            scalars: of_scalars,
+            vectors: of_vectors,
+            ..
+        } = &mut self.store;
+        for (n, store) in of_scalars.iter_mut().enumerate().take(scalars) {
+            fit(&self.particles, store, 1);
+            // Masses are fitted too, the drag is not.
+            if fits && n + 1 < SCALARS {
+                fit(&self.cells, store, 1);
+            }
         }
-        if cells {
-            self.reduced = vec![0; self.sums.len() * PARTICLES / CELLS];
-            fit(&self.cells, &mut self.vectors, 1);
+        for store in of_vectors.iter_mut().take(vectors) {
+            fit(&self.particles, store, 1);
+            if fits {
+                fit(&self.cells, store, 1);
+            }
+        }
+        if fits {
+            self.reduced = vec![0; self.totals.len() * PARTICLES / CELLS];
         }
         // Beyond one dimension windows grow by whole rows when particles cross.
         if D > 1 {
-            reserve(&mut self.scalars, MOST_OVERLAP * dofs);
-            reserve(&mut self.vectors, MOST_OVERLAP * dofs);
+            of_scalars.iter_mut().for_each(|store| reserve(store, MOST_OVERLAP * dofs));
+            of_vectors.iter_mut().for_each(|store| reserve(store, MOST_OVERLAP * dofs));
         }
     }
 
@@ -186,18 +236,17 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
     pub(super) fn bytes(&self) -> usize {
         size_of::<SpanWindow>() * (self.particles.capacity() + self.cells.capacity())
             + size_of::<[u32; 2]>() * self.bounds.capacity()
-            + size_of::<T>() * (self.scalars.capacity() + self.matrices.capacity())
-            + size_of::<SVector<T, D>>() * self.vectors.capacity()
-            + size_of::<Sums<T, D>>() * self.sums.capacity()
+            + size_of::<T>() * self.store.scalars.iter().map(Vec::capacity).sum::<usize>()
+            + size_of::<T>() * self.store.matrices.iter().map(Vec::capacity).sum::<usize>()
+            + size_of::<SVector<T, D>>() * self.store.vectors.iter().map(Vec::capacity).sum::<usize>()
+            + size_of::<Totals<T, D>>() * self.totals.capacity()
             + size_of::<usize>() * self.reduced.capacity()
             + size_of::<Moved<T>>() * self.moved.capacity()
     }
 
-    /// The particles' momentum, added up span by span.
-    pub(super) fn momentum(&self) -> Sums<T, D> {
-        self.sums
-            .iter()
-            .fold(Sums::zero(), |total, sums| total.with(sums))
+    /// Totals of all particles, added up span by span.
+    pub(super) fn total(&self) -> Totals<T, D> {
+        self.totals.iter().fold(Totals::zero(), Totals::with)
     }
 }
 

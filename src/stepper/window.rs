@@ -12,18 +12,10 @@ use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 
-/// Cells between a particle and the border of the window: functions of a cell may reach into the next one.
-const SAFE: u32 = 1;
 /// Cells beyond which a window is laid at least.
 const MARGIN: usize = 3;
 /// One in so many of its cells along an axis are laid beyond a body, so that a window seldom moves.
 const PART: usize = 8;
-
-/// Whether all that a particle of `cell` may see has numbers.
-#[inline(always)]
-pub(super) fn is_safe<T: Scalar, const D: usize>(grid: &Grid<T, D>, cell: &Cell<D>) -> bool {
-    D == 1 || grid.has_numbers(cell, SAFE)
-}
 
 /// The grid with a window around the particles' `cells`, or without where that would not spare half of it.
 pub(super) fn lay<T: Scalar, const D: usize>(grid: Grid<T, D>, cells: &[Cell<D>]) -> Grid<T, D> {

@@ -9,11 +9,11 @@ use nalgebra::SVector;
 use super::basis::taylor_sizes;
 use super::fit::{GRAM_SHARE, ROUNDING};
 use crate::field::Field;
-use crate::lanes::{LANES, Lanes};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Lanes, Number, Packs, each, in_lanes};
 
-/// Most components of a field: a tensor in three dimensions.
-pub const MOST_COMPONENTS: usize = 9;
+/// Most components of a field: a tensor in three dimensions, and the pressure of a liquid.
+pub const MOST_COMPONENTS: usize = 10;
 
 /// Components of the fields of a step along one axis, at most: mass and momentum.
 pub(crate) const FEW_COMPONENTS: usize = 2;
@@ -25,20 +25,25 @@ pub(crate) const fn are_few<T: Scalar, Q: Field<T>, const D: usize>() -> bool {
 
 /// The Taylor functions, as [`super::taylor_functions`].
 #[inline(always)]
-pub(crate) fn taylor_lanes<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(s: &[V; D]) -> [V; NB] {
-    let half = V::splat(T::one() / T::lit(2.0));
-    let sixth = V::splat(T::one() / T::lit(6.0));
-    let mut psi = [V::splat(T::one()); NB];
-    psi[1..=D].copy_from_slice(s);
+pub(crate) fn taylor_lanes<T: Scalar, K: Lanes<T>, const D: usize, const NB: usize>(
+    k: K,
+    s: &[K::V; D],
+) -> [K::V; NB] {
+    let half = k.splat(T::one() / T::lit(2.0));
+    let sixth = k.splat(T::one() / T::lit(6.0));
+    let mut psi = [k.splat(T::one()); NB];
+    for a in 0..D {
+        psi[1 + a] = s[a];
+    }
     if NB > D + 1 {
         for a in 0..D {
             psi[1 + D + a] = s[a] * s[a] * half - sixth;
         }
-        let mut k = 1 + 2 * D;
+        let mut n = 1 + 2 * D;
         for a in 0..D {
             for b in a + 1..D {
-                psi[k] = s[a] * s[b];
-                k += 1;
+                psi[n] = s[a] * s[b];
+                n += 1;
             }
         }
     }
@@ -86,11 +91,8 @@ pub(crate) struct FourFits<V, const NB: usize, const C: usize> {
 
 impl<V: Copy, const NB: usize, const C: usize> FourSums<V, NB, C> {
     #[inline(always)]
-    pub(crate) fn new<T: Scalar>() -> Self
-    where
-        V: Lanes<T>,
-    {
-        let zero = V::splat(T::zero());
+    pub(crate) fn new<T: Scalar, K: Lanes<T, V = V>>(k: K) -> Self {
+        let zero = k.splat(T::zero());
         Self {
             gram: [[zero; NB]; NB],
             right: [[zero; C]; NB],
@@ -102,7 +104,7 @@ impl<V: Copy, const NB: usize, const C: usize> FourSums<V, NB, C> {
     #[inline(always)]
     pub(crate) fn add_products<T: Scalar>(&mut self, psi: &[V; NB], weight: V, from: usize)
     where
-        V: Lanes<T>,
+        V: Number<T>,
     {
         for i in from..NB {
             let weighted = psi[i] * weight;
@@ -122,7 +124,7 @@ impl<V: Copy, const NB: usize, const C: usize> FourSums<V, NB, C> {
         values: &[V; C],
         components: usize,
     ) where
-        V: Lanes<T>,
+        V: Number<T>,
     {
         for i in 0..NB {
             let weighted = if i == 0 { first } else { psi[i] * weight };
@@ -136,7 +138,7 @@ impl<V: Copy, const NB: usize, const C: usize> FourSums<V, NB, C> {
     #[inline(always)]
     pub(crate) fn take_out<T: Scalar>(&mut self, mean: &[V; C], components: usize)
     where
-        V: Lanes<T>,
+        V: Number<T>,
     {
         for k in 1..NB {
             for q in 0..components {
@@ -147,26 +149,27 @@ impl<V: Copy, const NB: usize, const C: usize> FourSums<V, NB, C> {
 
     /// Fits with the functions from `first` on, as many as a cell has points, `counts`, at most.
     #[inline(always)]
-    pub(crate) fn fit<T: Scalar, const D: usize>(
+    pub(crate) fn fit<T: Scalar, K: Packs<T, V = V>, const D: usize>(
         &self,
+        k: K,
         first: usize,
         counts: &[usize; LANES],
         tolerance: T,
         components: usize,
     ) -> FourFits<V, NB, C>
     where
-        V: Lanes<T>,
+        V: Number<T>,
     {
-        let zero = V::splat(T::zero());
+        let zero = k.splat(T::zero());
         let Factored {
             factor,
             hard,
             functions,
             are_full,
-        } = factorise::<T, V, D, NB>(&self.gram, first, counts, tolerance);
+        } = factorise::<T, K, D, NB>(k, &self.gram, first, counts, tolerance);
         let mut coefficients = [[zero; C]; NB];
         for q in 0..components {
-            factor.solve(first, q, &self.right, &mut coefficients);
+            factor.solve::<T, C>(zero, first, q, &self.right, &mut coefficients);
         }
         FourFits {
             coefficients,
@@ -179,116 +182,129 @@ impl<V: Copy, const NB: usize, const C: usize> FourSums<V, NB, C> {
 
 /// `L D L^T` of four Gram matrices, with the functions from `first` on.
 #[inline(always)]
-pub(crate) fn factorise<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
-    gram: &Products<V, NB>,
+pub(crate) fn factorise<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
+    k: K,
+    gram: &Products<K::V, NB>,
     first: usize,
     counts: &[usize; LANES],
     tolerance: T,
-) -> Factored<V, NB> {
+) -> Factored<K::V, NB> {
     if const { D > 1 } {
-        return factorise_any::<T, V, D, NB>(gram, first, counts, tolerance);
+        return factorise_any::<T, K, D, NB>(k, gram, first, counts, tolerance);
     }
-    match factorise_full::<T, V, D, NB>(gram, first, counts, tolerance) {
+    match factorise_full::<T, K, D, NB>(k, gram, first, counts, tolerance) {
         Some(factor) => Factored {
             factor,
             hard: [false; LANES],
             functions: [NB - first; LANES],
             are_full: true,
         },
-        None => factorise_apart::<T, V, D, NB>(gram, first, counts, tolerance),
+        None => factorise_apart::<T, K, D, NB>(k, gram, first, counts, tolerance),
     }
 }
 
 /// The same where all points clearly see all functions: the same operations without what then changes nothing.
 #[inline(always)]
-fn factorise_full<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
-    gram: &Products<V, NB>,
+fn factorise_full<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
+    k: K,
+    gram: &Products<K::V, NB>,
     first: usize,
     counts: &[usize; LANES],
     tolerance: T,
-) -> Option<Factor<V, NB>> {
-    let (zero, one) = (V::splat(T::zero()), V::splat(T::one()));
+) -> Option<Factor<K::V, NB>> {
+    let (zero, one) = (k.splat(T::zero()), k.splat(T::one()));
     let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
-    let share = V::splat(T::lit(GRAM_SHARE));
+    let share = k.splat(T::lit(GRAM_SHARE));
     let mut l = [[zero; NB]; NB];
     let mut full = one;
-    for k in first..NB {
-        let mut left = gram[k][k];
+    for m in first..NB {
+        let mut left = gram[m][m];
         let mut row = [zero; NB];
-        for j in first..k {
-            let mut dot = gram[k][j];
+        for j in first..m {
+            let mut dot = gram[m][j];
             for i in first..j {
                 dot = dot - l[j][i] * row[i];
             }
             row[j] = dot;
-            l[k][j] = dot * l[j][j];
-            left = left - l[k][j] * dot;
+            l[m][j] = dot * l[j][j];
+            left = left - l[m][j] * dot;
         }
-        let least = gram[0][0] * V::splat(tolerance * tolerance * sizes[k] * sizes[k]);
-        full = full * left.above(least) * left.above(gram[k][k] * share);
-        l[k][k] = one / left;
+        let least = gram[0][0] * k.splat(tolerance * tolerance * sizes[m] * sizes[m]);
+        full = full * left.above(least) * left.above(gram[m][m] * share);
+        l[m][m] = one / left;
     }
-    let are_enough = counts.iter().all(|&count| count >= NB);
-    let (half, two) = (V::splat(T::one() / T::lit(2.0)), V::splat(T::lit(2.0)));
-    (are_enough && full.are_between(half, two)).then_some(Factor(l))
+    let are_enough = counts[0] >= NB && counts[1] >= NB && counts[2] >= NB && counts[3] >= NB;
+    let (half, two) = (k.splat(T::one() / T::lit(2.0)), k.splat(T::lit(2.0)));
+    (are_enough && k.are_between(full, half, two)).then_some(Factor(l))
 }
 
 /// [`factorise_any`], out of the way of the code that usually runs.
 #[cold]
 #[inline(never)]
-fn factorise_apart<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
-    gram: &Products<V, NB>,
+fn factorise_apart<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
+    k: K,
+    gram: &Products<K::V, NB>,
     first: usize,
     counts: &[usize; LANES],
     tolerance: T,
-) -> Factored<V, NB> {
-    factorise_any::<T, V, D, NB>(gram, first, counts, tolerance)
+) -> Factored<K::V, NB> {
+    k.run(
+        #[inline(always)]
+        || factorise_any::<T, K, D, NB>(k, gram, first, counts, tolerance),
+    )
 }
 
 /// The same whatever the points see.
 #[inline(always)]
-fn factorise_any<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
-    gram: &Products<V, NB>,
+fn factorise_any<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
+    k: K,
+    gram: &Products<K::V, NB>,
     first: usize,
     counts: &[usize; LANES],
     tolerance: T,
-) -> Factored<V, NB> {
-    let (zero, one) = (V::splat(T::zero()), V::splat(T::one()));
+) -> Factored<K::V, NB> {
+    let (zero, one) = (k.splat(T::zero()), k.splat(T::one()));
     let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
-    let share = V::splat(T::lit(GRAM_SHARE));
-    let rounding = V::splat(T::lit(ROUNDING) * T::default_epsilon());
-    let (total, numbers) = (gram[0][0], V::new(std::array::from_fn(|l| T::count(counts[l]))));
+    let share = k.splat(T::lit(GRAM_SHARE));
+    let rounding = k.splat(T::lit(ROUNDING) * T::default_epsilon());
+    let (total, numbers) = (gram[0][0], k.new(in_lanes(#[inline(always)] |l| T::count(counts[l]))));
     let mut l = [[zero; NB]; NB];
     let (mut doubt, mut functions) = (zero, zero);
-    for k in first..NB {
-        let square = gram[k][k];
+    for m in first..NB {
+        let square = gram[m][m];
         let mut left = square;
         let mut row = [zero; NB];
-        for j in first..k {
-            let mut dot = gram[k][j];
+        for j in first..m {
+            let mut dot = gram[m][j];
             for i in first..j {
                 dot = dot - l[j][i] * row[i];
             }
             row[j] = dot;
-            l[k][j] = dot * l[j][j];
-            left = left - l[k][j] * dot;
+            l[m][j] = dot * l[j][j];
+            left = left - l[m][j] * dot;
         }
-        let least = total * V::splat(tolerance * tolerance * sizes[k] * sizes[k]);
-        let allowed = numbers.above(V::splat(T::count(k)));
+        let least = total * k.splat(tolerance * tolerance * sizes[m] * sizes[m]);
+        let allowed = numbers.above(k.splat(T::count(m)));
         let kept = left.above(least) * left.above(square * share) * allowed;
         let seen = (left + square * rounding).above(least) * allowed;
         doubt = doubt + (seen - kept);
         functions = functions + kept;
-        l[k][k] = kept / (left * kept + (one - kept));
-        for j in first..k {
-            l[k][j] = l[k][j] * kept;
+        l[m][m] = kept / (left * kept + (one - kept));
+        for j in first..m {
+            l[m][j] = l[m][j] * kept;
         }
     }
-    let (doubt, functions) = (doubt.array(), functions.array());
+    let (doubt, functions) = (k.array(doubt), k.array(functions));
     Factored {
         factor: Factor(l),
-        hard: std::array::from_fn(|l| doubt[l] != T::zero()),
-        functions: std::array::from_fn(|l| functions[l].primal() as usize),
+        hard: each(
+            #[inline(always)]
+            |l| doubt[l] != T::zero(),
+        ),
+        functions: each(
+            #[inline(always)]
+            |l| functions[l].primal() as usize,
+        ),
         are_full: false,
     }
 }
@@ -298,15 +314,16 @@ impl<V: Copy, const NB: usize> Factor<V, NB> {
     #[inline(always)]
     pub(crate) fn solve<T: Scalar, const C: usize>(
         &self,
+        zero: V,
         first: usize,
         q: usize,
         right: &Rights<V, NB, C>,
         coefficients: &mut Rights<V, NB, C>,
     ) where
-        V: Lanes<T>,
+        V: Number<T>,
     {
         let l = &self.0;
-        let mut x = [V::splat(T::zero()); NB];
+        let mut x = [zero; NB];
         for k in first..NB {
             x[k] = right[k][q];
             for j in first..k {

@@ -1,8 +1,8 @@
 //! Taylor functions of one cell in the coordinates of its neighbour.
 
 use crate::field::Field;
-use crate::lanes::Lanes;
 use crate::scalar::Scalar;
+use crate::simd::{Lanes, Number};
 
 /// Turns sums of `psi(s) q` into sums of `psi(s + 2 e_axis) q` (`up`) or of `psi(s - 2 e_axis) q`: from a cell's own local
 /// coordinates to those of its neighbour below or above along `axis`. The functions span the polynomials of their degree, so
@@ -36,26 +36,27 @@ pub(crate) fn shift_sums<T: Scalar, const D: usize, const NB: usize, Q: Field<T>
 
 /// The same for four cells at once and rows of any length, of which the first `columns` count.
 #[inline(always)]
-pub(crate) fn shift_lanes<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize, const N: usize>(
-    rows: &mut [[V; N]; NB],
+pub(crate) fn shift_lanes<T: Scalar, K: Lanes<T>, const D: usize, const NB: usize, const N: usize>(
+    k: K,
+    rows: &mut [[K::V; N]; NB],
     columns: usize,
     axis: usize,
     up: bool,
 ) {
-    let two = V::splat(T::lit(2.0));
-    let step = if up { two } else { V::splat(-T::lit(2.0)) };
+    let two = k.splat(T::lit(2.0));
+    let step = if up { two } else { k.splat(-T::lit(2.0)) };
     for q in 0..columns {
         let constant = rows[0][q];
         if NB > D + 1 {
             let square = step.mul_add(rows[1 + axis][q], rows[1 + D + axis][q]);
             rows[1 + D + axis][q] = two.mul_add(constant, square);
-            let mut k = 1 + 2 * D;
+            let mut n = 1 + 2 * D;
             for a in 0..D {
                 for b in a + 1..D {
                     if a == axis || b == axis {
-                        rows[k][q] = step.mul_add(rows[1 + a + b - axis][q], rows[k][q]);
+                        rows[n][q] = step.mul_add(rows[1 + a + b - axis][q], rows[n][q]);
                     }
-                    k += 1;
+                    n += 1;
                 }
             }
         }
@@ -69,7 +70,7 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
     use nalgebra::{SVector, vector};
-    use wide::f64x4;
+    use crate::simd::{Four, Plain};
 
     fn check<const D: usize, const NB: usize>(s: SVector<f64, D>) {
         for axis in 0..D {
@@ -79,11 +80,11 @@ mod tests {
                 let expected = taylor_functions::<f64, D, NB>(&shifted);
                 let mut found: [f64; NB] = taylor_functions::<f64, D, NB>(&s).into();
                 shift_sums::<f64, D, NB, f64>(&mut found, axis, up);
-                let mut rows = taylor_functions::<f64, D, NB>(&s).data.0[0].map(|psi| [f64x4::splat(psi)]);
-                shift_lanes::<f64, f64x4, D, NB, 1>(&mut rows, 1, axis, up);
+                let mut rows = taylor_functions::<f64, D, NB>(&s).data.0[0].map(|psi| [Four([psi; 4])]);
+                shift_lanes::<f64, Plain, D, NB, 1>(Plain, &mut rows, 1, axis, up);
                 for k in 0..NB {
                     assert_relative_eq!(found[k], expected[k], epsilon = 1e-14);
-                    assert_relative_eq!(rows[k][0].to_array()[3], expected[k], epsilon = 1e-14);
+                    assert_relative_eq!(rows[k][0].0[3], expected[k], epsilon = 1e-14);
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::lanes::is;
+use crate::simd::is;
 use crate::scalar::Scalar;
 
 /// Sweeps after which the iteration ends whatever is left. Convergence is quadratic: a 3 x 3 tensor takes three to five.

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::filling::OpenSides;
-use crate::lanes::{LANES, Lanes};
 use crate::reconstruction::Cloud;
 use crate::reconstruction::taylor::{self, CellGroup};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Number, Packs, each, in_lanes};
 use crate::taylor::{Factor, Products, Rights, factorise, shift_lanes};
 
 /// In place of a neighbour that there is not.
@@ -35,21 +35,21 @@ pub(super) struct FourFits<T, const D: usize, const NB: usize> {
 
 /// Keeps the lower half.
 #[inline(always)]
-fn keep<T: Scalar, V: Lanes<T>, const NB: usize>(products: &Products<V, NB>, kept: &mut KeptProducts<T, NB>) {
+fn keep<T: Scalar, K: Packs<T>, const NB: usize>(k: K, products: &Products<K::V, NB>, kept: &mut KeptProducts<T, NB>) {
     for i in 0..NB {
         for j in 0..=i {
-            kept[i][j] = products[i][j].array();
+            kept[i][j] = k.array(products[i][j]);
         }
     }
 }
 
 /// The lower half of what was kept.
 #[inline(always)]
-fn load<T: Scalar, V: Lanes<T>, const NB: usize>(kept: &KeptProducts<T, NB>) -> Products<V, NB> {
-    let mut products = [[V::splat(T::zero()); NB]; NB];
+fn load<T: Scalar, K: Packs<T>, const NB: usize>(k: K, kept: &KeptProducts<T, NB>) -> Products<K::V, NB> {
+    let mut products = [[k.splat(T::zero()); NB]; NB];
     for i in 0..NB {
         for j in 0..=i {
-            products[i][j] = V::new(kept[i][j]);
+            products[i][j] = k.new(kept[i][j]);
         }
     }
     products
@@ -57,30 +57,35 @@ fn load<T: Scalar, V: Lanes<T>, const NB: usize>(kept: &KeptProducts<T, NB>) -> 
 
 /// Numbers of points, given as sums of ones.
 #[inline(always)]
-fn counts<T: Scalar, V: Lanes<T>>(sums: V) -> [usize; LANES] {
-    let sums = sums.array();
-    std::array::from_fn(|l| sums[l].primal() as usize)
+fn counts<T: Scalar, K: Packs<T>>(k: K, sums: K::V) -> [usize; LANES] {
+    let sums = k.array(sums);
+    each(
+        #[inline(always)]
+        |l| sums[l].primal() as usize,
+    )
 }
 
 /// One or zero.
 #[inline(always)]
-fn mask<T: Scalar, V: Lanes<T>>(lanes: [bool; LANES]) -> V {
-    V::new(std::array::from_fn(
+fn mask<T: Scalar, K: Packs<T>>(k: K, lanes: [bool; LANES]) -> K::V {
+    k.new(in_lanes(
+        #[inline(always)]
         |l| if lanes[l] { T::one() } else { T::zero() },
     ))
 }
 
 /// Sums of products over the own particles of each of the cells at `places`, the lower half.
 #[inline(always)]
-pub(super) fn keep_gram<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
+pub(super) fn keep_gram<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
+    k: K,
     cloud: &Cloud<'_, T, D>,
     places: Range<usize>,
     kept: &mut KeptProducts<T, NB>,
 ) {
     let nothing = |_: usize| T::zero();
     let group = CellGroup::new(cloud, places.clone());
-    let sums = group.sums::<taylor::Products, T, V, T, NB, 1>(cloud, places, &nothing, cloud.volumes);
-    keep::<T, V, NB>(&sums.gram, kept);
+    let sums = group.sums::<taylor::Products, T, K, T, NB, 1>(k, cloud, places, &nothing, cloud.volumes);
+    keep::<T, K, NB>(k, &sums.gram, kept);
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
@@ -105,8 +110,9 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
 
     /// Takes in the cells at `places`, given the sums of products of all.
     #[inline(always)]
-    pub(super) fn take_in<V: Lanes<T>>(
+    pub(super) fn take_in<K: Packs<T>>(
         &mut self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         places: Range<usize>,
         grams: &[KeptProducts<T, NB>],
@@ -121,14 +127,14 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
                     neighbours[axis][usize::from(above)][l] = other as u32;
                 });
         }
-        let gram = load::<T, V, NB>(&grams[places.start / LANES]);
-        let own_counts = counts::<T, V>(gram[0][0]);
-        let own = factorise::<T, V, D, NB>(&gram, 0, &own_counts, tolerance);
-        let all = with_neighbours::<T, V, D, NB>(gram, neighbours, grams);
-        let all_counts = counts::<T, V>(all[0][0]);
-        let wide = factorise::<T, V, D, NB>(&all, 0, &all_counts, tolerance);
-        keep::<T, V, NB>(&own.factor.0, &mut self.own);
-        keep::<T, V, NB>(&wide.factor.0, &mut self.wide);
+        let gram = load::<T, K, NB>(k, &grams[places.start / LANES]);
+        let own_counts = counts::<T, K>(k, gram[0][0]);
+        let own = factorise::<T, K, D, NB>(k, &gram, 0, &own_counts, tolerance);
+        let all = with_neighbours::<T, K, D, NB>(k, gram, neighbours, grams);
+        let all_counts = counts::<T, K>(k, all[0][0]);
+        let wide = factorise::<T, K, D, NB>(k, &all, 0, &all_counts, tolerance);
+        keep::<T, K, NB>(k, &own.factor.0, &mut self.own);
+        keep::<T, K, NB>(k, &wide.factor.0, &mut self.wide);
         for l in 0..LANES {
             self.own_is_full[l] = own.functions[l] == NB;
             self.wide_is_full[l] = !wide.hard[l] && wide.functions[l] == NB;
@@ -139,27 +145,31 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
     /// Coefficients of what is integrated, from the own sums: the own fit, and where that has not all functions the wide one with,
     /// on top of it, what the own particles see beside that.
     #[inline(always)]
-    pub(super) fn integrated<V: Lanes<T>, const C: usize>(
+    pub(super) fn integrated<K: Packs<T>, const C: usize>(
         &self,
+        k: K,
         group: usize,
         gram: &KeptProducts<T, NB>,
         sums: &KeptSums<'_, T>,
-    ) -> Rights<V, NB, C> {
-        let wants_wide: [bool; LANES] = std::array::from_fn(|l| !self.own_is_full[l] && self.wide_is_full[l]);
+    ) -> Rights<K::V, NB, C> {
+        let wants_wide: [bool; LANES] = each(
+                #[inline(always)]
+                |l| !self.own_is_full[l] && self.wide_is_full[l],
+            );
         if !wants_wide.contains(&true) {
-            return self.own_coefficients(&sums.load::<V, NB, C>(group), sums.components);
+            return self.own_coefficients(k, &sums.load::<K, NB, C>(k, group), sums.components);
         }
-        let mut seen = self.wide_coefficients(group, sums);
-        let mask = mask::<T, V>(wants_wide);
-        for k in 0..NB {
+        let mut seen = self.wide_coefficients(k, group, sums);
+        let mask = mask::<T, K>(k, wants_wide);
+        for n in 0..NB {
             for q in 0..sums.components {
-                seen[k][q] = seen[k][q] * mask;
+                seen[n][q] = seen[n][q] * mask;
             }
         }
-        let rest = self.rest::<V, C>(group, gram, sums, &seen);
-        for k in 0..NB {
+        let rest = self.rest::<K, C>(k, group, gram, sums, &seen);
+        for n in 0..NB {
             for q in 0..sums.components {
-                seen[k][q] = seen[k][q] + rest[k][q];
+                seen[n][q] = seen[n][q] + rest[n][q];
             }
         }
         seen
@@ -167,15 +177,16 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
 
     /// Coefficients of the own fits of what polynomials leave of the values.
     #[inline(always)]
-    fn rest<V: Lanes<T>, const C: usize>(
+    fn rest<K: Packs<T>, const C: usize>(
         &self,
+        k: K,
         group: usize,
         gram: &KeptProducts<T, NB>,
         sums: &KeptSums<'_, T>,
-        seen: &Rights<V, NB, C>,
-    ) -> Rights<V, NB, C> {
-        let mut right = sums.load::<V, NB, C>(group);
-        let gram = load::<T, V, NB>(gram);
+        seen: &Rights<K::V, NB, C>,
+    ) -> Rights<K::V, NB, C> {
+        let mut right = sums.load::<K, NB, C>(k, group);
+        let gram = load::<T, K, NB>(k, gram);
         for i in 0..NB {
             for j in 0..NB {
                 let product = gram[i.max(j)][i.min(j)];
@@ -184,67 +195,76 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
                 }
             }
         }
-        self.own_coefficients(&right, sums.components)
+        self.own_coefficients(k, &right, sums.components)
     }
 
     /// Adds to the wide fits the constants with which their slopes leave the means of the cells' fits alone, wherever in the
     /// cell its particles are: a slope that changes turns about the middle of the cell, and not of the particles.
     #[inline(always)]
-    pub(super) fn turn_about_the_middle<V: Lanes<T>, const C: usize>(
+    pub(super) fn turn_about_the_middle<K: Packs<T>, const C: usize>(
         &self,
+        k: K,
         group: usize,
         gram: &KeptProducts<T, NB>,
         sums: &KeptSums<'_, T>,
-        wide: &mut Rights<V, NB, C>,
+        wide: &mut Rights<K::V, NB, C>,
     ) {
-        let rest = self.rest::<V, C>(group, gram, sums, wide);
-        for k in 1..=D {
-            let middle = V::new(std::array::from_fn(|l| middle(gram[k][0][l], gram[0][0][l])));
+        let rest = self.rest::<K, C>(k, group, gram, sums, wide);
+        for n in 1..=D {
+            let middle = k.new(in_lanes(
+                #[inline(always)]
+                |l| middle(gram[n][0][l], gram[0][0][l]),
+            ));
             for q in 0..sums.components {
-                wide[0][q] = wide[0][q] - rest[k][q] * middle;
+                wide[0][q] = wide[0][q] - rest[n][q] * middle;
             }
         }
     }
 
     /// Coefficients of the own fits from their sums.
     #[inline(always)]
-    pub(super) fn own_coefficients<V: Lanes<T>, const C: usize>(
+    pub(super) fn own_coefficients<K: Packs<T>, const C: usize>(
         &self,
-        right: &Rights<V, NB, C>,
+        k: K,
+        right: &Rights<K::V, NB, C>,
         components: usize,
-    ) -> Rights<V, NB, C> {
-        solve(&self.own, right, components)
+    ) -> Rights<K::V, NB, C> {
+        solve(k, &self.own, right, components)
     }
 
     /// Coefficients of the wide fits; zero where they have not all functions.
     #[inline(always)]
-    pub(super) fn wide_coefficients<V: Lanes<T>, const C: usize>(
+    pub(super) fn wide_coefficients<K: Packs<T>, const C: usize>(
         &self,
+        k: K,
         group: usize,
         sums: &KeptSums<'_, T>,
-    ) -> Rights<V, NB, C> {
-        let mut right = sums.load::<V, NB, C>(group);
+    ) -> Rights<K::V, NB, C> {
+        let mut right = sums.load::<K, NB, C>(k, group);
         for axis in 0..D {
             for (side, places) in self.neighbours[axis].iter().enumerate() {
-                let there: [bool; LANES] = std::array::from_fn(|l| places[l] != NONE);
+                let there: [bool; LANES] = each(
+                #[inline(always)]
+                |l| places[l] != NONE,
+            );
                 if !there.contains(&true) {
                     continue;
                 }
-                let mut theirs = sums.load_at::<V, NB, C>(places);
-                shift_lanes::<T, V, D, NB, C>(&mut theirs, sums.components, axis, side > 0);
-                let mask = mask::<T, V>(there);
-                for k in 0..NB {
+                let mut theirs = sums.load_at::<K, NB, C>(k, places);
+                shift_lanes::<T, K, D, NB, C>(k, &mut theirs, sums.components, axis, side > 0);
+                let mask = mask::<T, K>(k, there);
+                for n in 0..NB {
                     for q in 0..sums.components {
-                        right[k][q] = theirs[k][q].mul_add(mask, right[k][q]);
+                        right[n][q] = theirs[n][q].mul_add(mask, right[n][q]);
                     }
                 }
             }
         }
-        let mask = mask::<T, V>(self.wide_is_full);
-        let mut coefficients = solve(&self.wide, &right, sums.components);
-        for k in 0..NB {
+        let mask = mask::<T, K>(k, self.wide_is_full);
+        let mut coefficients = solve(k, &self.wide, &right, sums.components);
+        for n in 0..NB {
             for q in 0..sums.components {
-                coefficients[k][q] = coefficients[k][q] * mask;
+                coefficients[n][q] = coefficients[n][q] * mask;
             }
         }
         coefficients
@@ -263,41 +283,49 @@ pub(super) fn middle<T: Scalar>(sum: T, count: T) -> T {
 }
 
 #[inline(always)]
-fn solve<T: Scalar, V: Lanes<T>, const NB: usize, const C: usize>(
+fn solve<T: Scalar, K: Packs<T>, const NB: usize, const C: usize>(
+    k: K,
     factor: &KeptProducts<T, NB>,
-    right: &Rights<V, NB, C>,
+    right: &Rights<K::V, NB, C>,
     components: usize,
-) -> Rights<V, NB, C> {
-    let factor = Factor(load::<T, V, NB>(factor));
-    let mut coefficients = [[V::splat(T::zero()); C]; NB];
+) -> Rights<K::V, NB, C> {
+    let factor = Factor(load::<T, K, NB>(k, factor));
+    let mut coefficients = [[k.splat(T::zero()); C]; NB];
     for q in 0..components {
-        factor.solve(0, q, right, &mut coefficients);
+        factor.solve::<T, C>(k.splat(T::zero()), 0, q, right, &mut coefficients);
     }
     coefficients
 }
 
 /// Adds the sums of products of the neighbours, in the frames of the cells themselves.
 #[inline(always)]
-fn with_neighbours<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
-    mut gram: Products<V, NB>,
+fn with_neighbours<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
+    k: K,
+    mut gram: Products<K::V, NB>,
     neighbours: &Neighbours<D>,
     grams: &[KeptProducts<T, NB>],
-) -> Products<V, NB> {
+) -> Products<K::V, NB> {
     for axis in 0..D {
         for (side, places) in neighbours[axis].iter().enumerate() {
-            let there: [bool; LANES] = std::array::from_fn(|l| places[l] != NONE);
+            let there: [bool; LANES] = each(
+                #[inline(always)]
+                |l| places[l] != NONE,
+            );
             if !there.contains(&true) {
                 continue;
             }
             let at: [usize; LANES] =
-                std::array::from_fn(|l| if places[l] == NONE { 0 } else { places[l] as usize });
+                each(
+                #[inline(always)]
+                |l| if places[l] == NONE { 0 } else { places[l] as usize },
+            );
             let of = at.map(|place| (&grams[place / LANES], place % LANES));
             let [a, b, c, d] = of;
             let mut rows = gram;
             for i in 0..NB {
                 for j in 0..NB {
                     let (high, low) = (i.max(j), i.min(j));
-                    rows[i][j] = V::new([
+                    rows[i][j] = k.new([
                         a.0[high][low][a.1],
                         b.0[high][low][b.1],
                         c.0[high][low][c.1],
@@ -305,15 +333,15 @@ fn with_neighbours<T: Scalar, V: Lanes<T>, const D: usize, const NB: usize>(
                     ]);
                 }
             }
-            shift_lanes::<T, V, D, NB, NB>(&mut rows, NB, axis, side > 0);
+            shift_lanes::<T, K, D, NB, NB>(k, &mut rows, NB, axis, side > 0);
             let mut columns = rows;
             for i in 0..NB {
                 for j in 0..NB {
                     columns[j][i] = rows[i][j];
                 }
             }
-            shift_lanes::<T, V, D, NB, NB>(&mut columns, NB, axis, side > 0);
-            let mask = mask::<T, V>(there);
+            shift_lanes::<T, K, D, NB, NB>(k, &mut columns, NB, axis, side > 0);
+            let mask = mask::<T, K>(k, there);
             for i in 0..NB {
                 for j in 0..=i {
                     gram[i][j] = columns[j][i].mul_add(mask, gram[i][j]);
@@ -335,16 +363,17 @@ pub(super) struct KeptSums<'a, T> {
 impl<T: Scalar> KeptSums<'_, T> {
     /// Of four cells.
     #[inline(always)]
-    pub(super) fn load<V: Lanes<T>, const NB: usize, const C: usize>(
+    pub(super) fn load<K: Packs<T>, const NB: usize, const C: usize>(
         &self,
+        k: K,
         group: usize,
-    ) -> Rights<V, NB, C> {
-        let mut rights = [[V::splat(T::zero()); C]; NB];
+    ) -> Rights<K::V, NB, C> {
+        let mut rights = [[k.splat(T::zero()); C]; NB];
         let first = group * NB * self.components;
         let values = &self.values[first..first + NB * self.components];
-        for k in 0..NB {
+        for n in 0..NB {
             for q in 0..self.components {
-                rights[k][q] = V::new(values[k * self.components + q]);
+                rights[n][q] = k.new(values[n * self.components + q]);
             }
         }
         rights
@@ -352,23 +381,31 @@ impl<T: Scalar> KeptSums<'_, T> {
 
     /// Of the cells at four places, any where there is none.
     #[inline(always)]
-    fn load_at<V: Lanes<T>, const NB: usize, const C: usize>(
+    fn load_at<K: Packs<T>, const NB: usize, const C: usize>(
         &self,
+        k: K,
         places: &[u32; LANES],
-    ) -> Rights<V, NB, C> {
-        let mut rights = [[V::splat(T::zero()); C]; NB];
-        let each = NB * self.components;
+    ) -> Rights<K::V, NB, C> {
+        let mut rights = [[k.splat(T::zero()); C]; NB];
+        let count = NB * self.components;
         let at: [usize; LANES] =
-            std::array::from_fn(|l| if places[l] == NONE { 0 } else { places[l] as usize });
-        let of: [&[[T; LANES]]; LANES] = std::array::from_fn(|l| {
-            let first = at[l] / LANES * each;
-            &self.values[first..first + each]
-        });
-        for k in 0..NB {
+            each(
+                #[inline(always)]
+                |l| if places[l] == NONE { 0 } else { places[l] as usize },
+            );
+        let of: [&[[T; LANES]]; LANES] = each(
+            #[inline(always)]
+            |l| {
+                let first = at[l] / LANES * count;
+                &self.values[first..first + count]
+            },
+        );
+        for n in 0..NB {
             for q in 0..self.components {
-                rights[k][q] = V::new(std::array::from_fn(|l| {
-                    of[l][k * self.components + q][at[l] % LANES]
-                }));
+                rights[n][q] = k.new(in_lanes(
+                    #[inline(always)]
+                    |l| of[l][n * self.components + q][at[l] % LANES],
+                ));
             }
         }
         rights
@@ -389,14 +426,15 @@ impl<T: Scalar> KeptSums<'_, T> {
 
 /// Puts the sums of four cells where they are kept.
 #[inline(always)]
-pub(super) fn keep_sums<T: Scalar, V: Lanes<T>, const NB: usize, const C: usize>(
-    rights: &Rights<V, NB, C>,
+pub(super) fn keep_sums<T: Scalar, K: Packs<T>, const NB: usize, const C: usize>(
+    k: K,
+    rights: &Rights<K::V, NB, C>,
     components: usize,
     kept: &mut [[T; LANES]],
 ) {
-    for k in 0..NB {
+    for n in 0..NB {
         for q in 0..components {
-            kept[k * components + q] = rights[k][q].array();
+            kept[n * components + q] = k.array(rights[n][q]);
         }
     }
 }

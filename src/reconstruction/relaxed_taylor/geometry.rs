@@ -6,10 +6,10 @@ use super::cells::{Kind, RelaxedCell};
 use super::determined::seen_by_particles;
 use super::four::{FourFits, KeptProducts, keep_gram};
 use super::{GROUPS, RelaxedTaylor};
-use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::{Rows, each_span, worth_sharing};
 use crate::reconstruction::{Cloud, Filling};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Packs, dispatch};
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     /// Whether threads should share the groups of four cells.
@@ -30,8 +30,9 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let parallel = self.share_groups();
         let mut grams = std::mem::take(&mut self.grams);
         grams.resize(groups, [[[T::zero(); LANES]; NB]; NB]);
+        let this = &*self;
         each_span(parallel, GROUPS, &mut grams[..], &|first, grams| {
-            with_lanes_of!(T, self.grams_in(cloud, first, grams));
+            dispatch!(T, |k| this.grams_in(k, cloud, first, grams));
         });
         let (mut fits, mut cells) = (std::mem::take(&mut self.fits), std::mem::take(&mut self.cells));
         let count = cells.len();
@@ -52,7 +53,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                 degree,
                 tolerance,
             };
-            with_lanes_of!(T, fitting.fits_in(first, fits, cells.values));
+            dispatch!(T, |k| fitting.fits_in(k, first, fits, cells.values));
         });
         (self.grams, self.fits, self.cells) = (grams, fits, cells);
     }
@@ -123,15 +124,18 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             && seen_by_particles(cloud, cloud.bins.occupied()[place] as usize, self.degree) != Filling::Full
     }
 
-    #[inline(never)]
-    fn grams_in<V: Lanes<T>>(
+    #[inline(always)]
+    fn grams_in<K: Packs<T>>(
         &self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         first: usize,
         grams: &mut [KeptProducts<T, NB>],
     ) {
-        for (k, kept) in grams.iter_mut().enumerate() {
-            keep_gram::<T, V, D, NB>(cloud, self.places(first + k), kept);
+        // A copy: a compiler then knows that what is written leaves it alone.
+        let cloud = &{ *cloud };
+        for (n, kept) in grams.iter_mut().enumerate() {
+            keep_gram::<T, K, D, NB>(k, cloud, self.places(first + n), kept);
         }
     }
 }
@@ -148,13 +152,19 @@ struct Fitting<'a, 'c, T, const D: usize, const NB: usize> {
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> Fitting<'_, '_, T, D, NB> {
-    #[inline(never)]
-    fn fits_in<V: Lanes<T>>(&self, first: usize, fits: &mut [FourFits<T, D, NB>], cells: &mut [RelaxedCell]) {
+    #[inline(always)]
+    fn fits_in<K: Packs<T>>(
+        &self,
+        k: K,
+        first: usize,
+        fits: &mut [FourFits<T, D, NB>],
+        cells: &mut [RelaxedCell],
+    ) {
         let occupied = self.cloud.bins.occupied();
-        for (k, (fits, cells)) in fits.iter_mut().zip(cells.chunks_mut(LANES)).enumerate() {
-            let start = (first + k) * LANES;
+        for (n, (fits, cells)) in fits.iter_mut().zip(cells.chunks_mut(LANES)).enumerate() {
+            let start = (first + n) * LANES;
             let places = start..self.count.min(start + LANES);
-            fits.take_in::<V>(self.cloud, places, self.grams, self.tolerance);
+            fits.take_in(k, self.cloud, places, self.grams, self.tolerance);
             for (l, cell) in cells.iter_mut().enumerate() {
                 let number = occupied[start + l] as usize;
                 let own = [fits.own_is_full[l], fits.own_is_hard[l]];

@@ -18,9 +18,9 @@ use super::gauss::GaussRule;
 use super::{Cloud, Crossed, Filling, Four, Point, Reconstruction, Shepard, Stored, Values};
 use crate::basis::BasisFamily;
 use crate::field::Field;
-use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::CELLS;
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Packs, dispatch};
 use crate::taylor::{FEW_COMPONENTS, MOST_COMPONENTS, are_few, default_tolerance};
 use cells::{Kind, RelaxedCell};
 use four::{FourFits, KeptProducts};
@@ -215,7 +215,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         value: impl Fn(usize) -> Q,
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        with_lanes_of!(T, self.integrate_in[Q](cloud, cells, &value, &mut sink));
+        dispatch!(T, |k| self.integrate_in(k, cloud, cells, &value, &mut sink));
     }
 
     fn line(&self) -> impl Iterator<Item = T> {
@@ -223,23 +223,24 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     }
 
     #[inline(always)]
-    fn integrate_four<V: Lanes<T>, Q: Field<T>>(
+    fn integrate_four<K: Packs<T>, Q: Field<T>>(
         &self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         cells: Range<usize>,
         _conserve: bool,
         _value: &impl Values<T, Q>,
-        mut sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+        mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {
         let (group, volume) = (cells.start / LANES, cloud.grid.cell_volume());
         if const { are_few::<T, Q, D>() } {
-            let coefficients = self.integrated::<V, Q, FEW_COMPONENTS>(group);
+            let coefficients = self.integrated::<K, Q, FEW_COMPONENTS>(k, group);
             self.rule
-                .emit_lanes(volume, &coefficients, Q::COMPONENTS, &mut sink);
+                .emit_lanes(k, volume, &coefficients, Q::COMPONENTS, &mut sink);
         } else {
-            let coefficients = self.integrated::<V, Q, MOST_COMPONENTS>(group);
+            let coefficients = self.integrated::<K, Q, MOST_COMPONENTS>(k, group);
             self.rule
-                .emit_lanes(volume, &coefficients, Q::COMPONENTS, &mut sink);
+                .emit_lanes(k, volume, &coefficients, Q::COMPONENTS, &mut sink);
         }
         let mut four = Four::default();
         for (hard, cell) in four.hard.iter_mut().zip(&self.cells[cells]) {

@@ -5,10 +5,10 @@ use nalgebra::SVector;
 use super::make_room;
 use crate::field::Field;
 use crate::grid::Cell;
-use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::{PARTICLES, Sliced, each_span, worth_sharing};
 use crate::reconstruction::Cloud;
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Number, Packs, dispatch, each, in_lanes};
 use crate::taylor::{Rights, taylor_lanes};
 
 /// For each occupied cell the polynomial and the share by which its particles are moved: `value += p(x) - share value`.
@@ -70,24 +70,27 @@ impl<T: Scalar> Pulls<T> {
         let parallel = worth_sharing::<D>(values.len(), PARTICLES);
         let work = (values, cloud.positions, cloud.bins.cells());
         each_span(parallel, PARTICLES, work, &|_, (values, positions, cells)| {
-            with_lanes_of!(T, self.move_in[_, D, NB](cloud, values, positions, cells));
+            dispatch!(T, |k| self.move_in::<_, Q, D, NB>(k, cloud, values, positions, cells));
         });
     }
 
-    #[inline(never)]
-    fn move_in<V: Lanes<T>, Q: Field<T>, const D: usize, const NB: usize>(
+    #[inline(always)]
+    fn move_in<K: Packs<T>, Q: Field<T>, const D: usize, const NB: usize>(
         &self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         values: &mut [Q],
         positions: &[SVector<T, D>],
         cells: &[Cell<D>],
     ) {
+        // A copy: a compiler then knows that what is written leaves it alone.
+        let cloud = &{ *cloud };
         let (mut near, mut last) = (0, None);
         let mut first = 0;
         while let Some(cell) = cells.get(first) {
             let all = &cells[first..cells.len().min(first + LANES)];
             let count = match all.first_chunk::<LANES>() {
-                Some(four) if four.iter().all(|other| other == cell) => LANES,
+                Some(four) if four[1] == *cell && four[2] == *cell && four[3] == *cell => LANES,
                 _ => all.iter().take_while(|&other| other == cell).count(),
             };
             if last != Some(cell) {
@@ -102,9 +105,9 @@ impl<T: Scalar> Pulls<T> {
                 );
                 match (x.first_chunk(), values.first_chunk_mut()) {
                     (Some(x), Some(values)) => {
-                        self.move_four::<V, Q, D, NB>(near, &frame(cloud, cell, x), values);
+                        self.move_four::<K, Q, D, NB>(k, near, &frame(k, cloud, cell, x), values);
                     }
-                    _ => self.move_few::<V, Q, D, NB>(near, &frame(cloud, cell, &repeated(x)), values),
+                    _ => self.move_few::<K, Q, D, NB>(k, near, &frame(k, cloud, cell, &repeated(x)), values),
                 }
             }
             first += count;
@@ -113,38 +116,46 @@ impl<T: Scalar> Pulls<T> {
 
     /// Moves less than four.
     #[inline(never)]
-    fn move_few<V: Lanes<T>, Q: Field<T>, const D: usize, const NB: usize>(
+    fn move_few<K: Packs<T>, Q: Field<T>, const D: usize, const NB: usize>(
         &self,
+        k: K,
         place: usize,
-        s: &[V; D],
+        s: &[K::V; D],
         values: &mut [Q],
     ) {
         let mut four = repeated(values);
-        self.move_four::<V, Q, D, NB>(place, s, &mut four);
+        k.run(
+            #[inline(always)]
+            || self.move_four::<K, Q, D, NB>(k, place, s, &mut four),
+        );
         for (value, new) in values.iter_mut().zip(four) {
             *value = new;
         }
     }
 
     #[inline(always)]
-    fn move_four<V: Lanes<T>, Q: Field<T>, const D: usize, const NB: usize>(
+    fn move_four<K: Packs<T>, Q: Field<T>, const D: usize, const NB: usize>(
         &self,
+        k: K,
         place: usize,
-        s: &[V; D],
+        s: &[K::V; D],
         values: &mut [Q; LANES],
     ) {
-        let psi = taylor_lanes::<T, V, D, NB>(s);
-        let each = NB * Q::COMPONENTS;
-        let coefficients = &self.coefficients[place * each..(place + 1) * each];
-        let (zero, share) = (V::splat(T::zero()), V::splat(self.shares[place]));
+        let psi = taylor_lanes::<T, K, D, NB>(k, s);
+        let count = NB * Q::COMPONENTS;
+        let coefficients = &self.coefficients[place * count..(place + 1) * count];
+        let (zero, share) = (k.splat(T::zero()), k.splat(self.shares[place]));
         for q in 0..Q::COMPONENTS {
-            let old = V::new(std::array::from_fn(|l| values[l].component(q)));
+            let old = k.new(in_lanes(
+                #[inline(always)]
+                |l| values[l].component(q),
+            ));
             // Only the change is rounded where the polynomial sees the value.
             let mut change = zero - old * share;
-            for k in (0..NB).rev() {
-                change = psi[k].mul_add(V::splat(coefficients[k * Q::COMPONENTS + q]), change);
+            for n in (0..NB).rev() {
+                change = psi[n].mul_add(k.splat(coefficients[n * Q::COMPONENTS + q]), change);
             }
-            let new = (old + change).array();
+            let new = k.array(old + change);
             for l in 0..LANES {
                 values[l].set_component(q, new[l]);
             }
@@ -155,22 +166,33 @@ impl<T: Scalar> Pulls<T> {
 /// Four of them, the last one again where there are fewer.
 #[inline(always)]
 fn repeated<A: Copy>(values: &[A]) -> [A; LANES] {
-    std::array::from_fn(|l| values[l.min(values.len() - 1)])
+    each(
+        #[inline(always)]
+        |l| values[l.min(values.len() - 1)],
+    )
 }
 
 /// Local coordinates of four points of a cell.
 #[inline(always)]
-fn frame<T: Scalar, V: Lanes<T>, const D: usize>(
+fn frame<T: Scalar, K: Packs<T>, const D: usize>(
+    k: K,
     cloud: &Cloud<'_, T, D>,
     cell: &Cell<D>,
     x: &[SVector<T, D>; LANES],
-) -> [V; D] {
-    let (two, one) = (V::splat(T::lit(2.0)), V::splat(T::one()));
-    std::array::from_fn(|a| {
-        let x = V::new(std::array::from_fn(|l| x[l][a])) - V::splat(cloud.grid.min()[a]);
-        let index = V::splat(T::lit(f64::from(cell[a])));
-        (x * V::splat(cloud.grid.inverse_cell_size()[a]) - index) * two - one
-    })
+) -> [K::V; D] {
+    let (two, one) = (k.splat(T::lit(2.0)), k.splat(T::one()));
+    each(
+        #[inline(always)]
+        |a| {
+            let x = k.new(in_lanes(
+                #[inline(always)]
+                |l| x[l][a],
+            ));
+            let index = k.splat(T::lit(f64::from(cell[a])));
+            let along = (x - k.splat(cloud.grid.min()[a])) * k.splat(cloud.grid.inverse_cell_size()[a]);
+            (along - index) * two - one
+        },
+    )
 }
 
 /// What is kept of some cells, to be filled.
@@ -209,8 +231,9 @@ impl<'a, T> PullRows<'a, T> {
 
 /// Puts the coefficients of four cells, `shares` of which are positive, where they are kept.
 #[inline(always)]
-pub(super) fn keep_pulls<T: Scalar, V: Lanes<T>, const NB: usize, const C: usize>(
-    rights: &Rights<V, NB, C>,
+pub(super) fn keep_pulls<T: Scalar, K: Packs<T>, const NB: usize, const C: usize>(
+    k: K,
+    rights: &Rights<K::V, NB, C>,
     components: usize,
     shares: [T; LANES],
     (coefficients, kept_shares): (&mut [T], &mut [T]),
@@ -220,9 +243,9 @@ pub(super) fn keep_pulls<T: Scalar, V: Lanes<T>, const NB: usize, const C: usize
     for (l, (cell, share)) in cells.enumerate().take(LANES) {
         *share = shares[l];
         if shares[l] > T::zero() {
-            for k in 0..NB {
+            for n in 0..NB {
                 for q in 0..components {
-                    cell[k * components + q] = rights[k][q].array()[l];
+                    cell[n * components + q] = k.array(rights[n][q])[l];
                 }
             }
         }

@@ -6,11 +6,11 @@ use super::pull::{PullRows, Pulls, keep_pulls};
 use super::stream::difference;
 use super::{ALIKE, GROUPS, RelaxedTaylor};
 use crate::field::Field;
-use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::each_span;
 use crate::reconstruction::taylor::{CellGroup, Weighted, local};
 use crate::reconstruction::{Cloud, Crossed, Patch, Reconstruction, Stored};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Number, Packs, dispatch};
 use crate::taylor::{CellFit, FEW_COMPONENTS, MOST_COMPONENTS, Rights, are_few, factorise};
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
@@ -25,11 +25,12 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         self.take_in_field(cloud, &Stored(taken));
         let mut pulls = std::mem::replace(&mut self.pulls, Pulls::none());
         let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
+        let this = &*self;
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
             if const { are_few::<T, Q, D>() } {
-                with_lanes_of!(T, self.pull_to_both_in[Q, FEW_COMPONENTS](crossed, first, rows));
+                dispatch!(T, |k| this.pull_to_both_in::<_, Q, FEW_COMPONENTS>(k, crossed, first, rows));
             } else {
-                with_lanes_of!(T, self.pull_to_both_in[Q, MOST_COMPONENTS](crossed, first, rows));
+                dispatch!(T, |k| this.pull_to_both_in::<_, Q, MOST_COMPONENTS>(k, crossed, first, rows));
             }
         });
         pulls.apply::<Q, D, NB>(cloud, values);
@@ -41,17 +42,18 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         self.pulls = pulls;
     }
 
-    #[inline(never)]
-    fn pull_to_both_in<V: Lanes<T>, Q: Field<T>, const C: usize>(
+    #[inline(always)]
+    fn pull_to_both_in<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
+        k: K,
         crossed: &[Crossed<T>],
         first: usize,
         rows: PullRows<'_, T>,
     ) {
         let sums = self.kept_sums::<Q>();
-        let zero = V::splat(T::zero());
-        for (k, row) in rows.groups().enumerate() {
-            let group = first + k;
+        let zero = k.splat(T::zero());
+        for (n, row) in rows.groups().enumerate() {
+            let group = first + n;
             let fits = &self.fits[group];
             let (mut own, mut neighbours) = ([T::zero(); LANES], [T::zero(); LANES]);
             for (l, place) in self.places(group).enumerate() {
@@ -62,20 +64,20 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                     }
                 }
             }
-            let seen = fits.own_coefficients(&sums.load::<V, NB, C>(group), Q::COMPONENTS);
-            let mut wide = fits.wide_coefficients::<V, C>(group, &sums);
+            let seen = fits.own_coefficients(k, &sums.load::<K, NB, C>(k, group), Q::COMPONENTS);
+            let mut wide = fits.wide_coefficients::<K, C>(k, group, &sums);
             if self.keeps_means {
-                fits.turn_about_the_middle::<V, C>(group, &self.grams[group], &sums, &mut wide);
+                fits.turn_about_the_middle::<K, C>(k, group, &self.grams[group], &sums, &mut wide);
             }
-            let mut pull: Rights<V, NB, C> = [[zero; C]; NB];
-            let shares = [V::new(own), V::new(neighbours)];
-            for k in 0..NB {
+            let mut pull: Rights<K::V, NB, C> = [[zero; C]; NB];
+            let shares = [k.new(own), k.new(neighbours)];
+            for n in 0..NB {
                 for q in 0..Q::COMPONENTS {
-                    pull[k][q] = wide[k][q].mul_add(shares[1], seen[k][q] * shares[0]);
+                    pull[n][q] = wide[n][q].mul_add(shares[1], seen[n][q] * shares[0]);
                 }
             }
-            let shares = (shares[0] + shares[1]).array();
-            keep_pulls::<T, V, NB, C>(&pull, Q::COMPONENTS, shares, row);
+            let shares = k.array(shares[0] + shares[1]);
+            keep_pulls::<T, K, NB, C>(k, &pull, Q::COMPONENTS, shares, row);
         }
     }
 
@@ -137,17 +139,12 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let taken: &[Q] = values;
         let mut pulls = std::mem::replace(&mut self.pulls, Pulls::none());
         let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
+        let this = &*self;
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
             if const { are_few::<T, Q, D>() } {
-                with_lanes_of!(
-                    T,
-                    self.pull_to_own_in[Q, FEW_COMPONENTS](cloud, weights, crossed, first, rows, taken)
-                );
+                dispatch!(T, |k| this.pull_to_own_in::<_, Q, FEW_COMPONENTS>(k, cloud, weights, crossed, first, rows, taken));
             } else {
-                with_lanes_of!(
-                    T,
-                    self.pull_to_own_in[Q, MOST_COMPONENTS](cloud, weights, crossed, first, rows, taken)
-                );
+                dispatch!(T, |k| this.pull_to_own_in::<_, Q, MOST_COMPONENTS>(k, cloud, weights, crossed, first, rows, taken));
             }
         });
         pulls.apply::<Q, D, NB>(cloud, values);
@@ -159,9 +156,10 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         self.pulls = pulls;
     }
 
-    #[inline(never)]
-    fn pull_to_own_in<V: Lanes<T>, Q: Field<T>, const C: usize>(
+    #[inline(always)]
+    fn pull_to_own_in<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         weights: &[T],
         crossed: &[Crossed<T>],
@@ -169,22 +167,24 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         rows: PullRows<'_, T>,
         values: &[Q],
     ) {
-        for (k, row) in rows.groups().enumerate() {
-            let places = self.places(first + k);
+        // A copy: a compiler then knows that what is written leaves it alone.
+        let cloud = &{ *cloud };
+        for (n, row) in rows.groups().enumerate() {
+            let places = self.places(first + n);
             let group = CellGroup::new(cloud, places.clone());
             let sums =
-                group.sums::<Weighted, T, V, Q, NB, C>(cloud, places.clone(), &Stored(values), weights);
-            let fits = factorise::<T, V, D, NB>(&sums.gram, 0, &group.counts, self.tolerance);
+                group.sums::<Weighted, T, K, Q, NB, C>(k, cloud, places.clone(), &Stored(values), weights);
+            let fits = factorise::<T, K, D, NB>(k, &sums.gram, 0, &group.counts, self.tolerance);
             let mut shares = [T::zero(); LANES];
             for (l, place) in places.enumerate() {
                 if self.cells[place].kind == Kind::Four {
                     [shares[l], _] = self.relaxation.shares(crossed[place]);
                 }
             }
-            let mut pull: Rights<V, NB, C> = [[V::splat(T::zero()); C]; NB];
-            let share = V::new(shares);
+            let mut pull: Rights<K::V, NB, C> = [[k.splat(T::zero()); C]; NB];
+            let share = k.new(shares);
             for q in 0..Q::COMPONENTS {
-                fits.factor.solve(0, q, &sums.right, &mut pull);
+                fits.factor.solve::<T, C>(k.splat(T::zero()), 0, q, &sums.right, &mut pull);
                 for function in &mut pull {
                     function[q] = function[q] * share;
                 }
@@ -194,7 +194,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                     shares[l] = Pulls::left();
                 }
             }
-            keep_pulls::<T, V, NB, C>(&pull, Q::COMPONENTS, shares, row);
+            keep_pulls::<T, K, NB, C>(k, &pull, Q::COMPONENTS, shares, row);
         }
     }
 

@@ -6,12 +6,12 @@ use super::RelaxedTaylor;
 use super::cells::{Kind, ended_patch, own_fit, wide_coefficients};
 use super::four::{KeptSums, keep_sums};
 use crate::field::Field;
-use crate::lanes::{LANES, Lanes, with_lanes_of};
 use crate::parallel::{Rows, each_span};
 use crate::reconstruction::gauss::polynomial;
 use crate::reconstruction::taylor::{CellGroup, OfValues, local};
 use crate::reconstruction::{Cloud, Patch, Point, Values};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Packs, dispatch};
 use crate::taylor::{FEW_COMPONENTS, MOST_COMPONENTS, Rights, are_few, taylor_functions};
 
 impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
@@ -28,29 +28,33 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             values: &mut kept[..],
             width: NB * Q::COMPONENTS,
         };
+        let this = &*self;
         each_span(self.share_groups(), super::GROUPS, work, &|first, kept| {
             if const { are_few::<T, Q, D>() } {
-                with_lanes_of!(T, self.sums_in[Q, _, FEW_COMPONENTS](cloud, first, value, kept.values));
+                dispatch!(T, |k| this.sums_in::<_, Q, _, FEW_COMPONENTS>(k, cloud, first, value, kept.values));
             } else {
-                with_lanes_of!(T, self.sums_in[Q, _, MOST_COMPONENTS](cloud, first, value, kept.values));
+                dispatch!(T, |k| this.sums_in::<_, Q, _, MOST_COMPONENTS>(k, cloud, first, value, kept.values));
             }
         });
         self.sums = kept;
     }
 
-    #[inline(never)]
-    fn sums_in<V: Lanes<T>, Q: Field<T>, F: Values<T, Q>, const C: usize>(
+    #[inline(always)]
+    fn sums_in<K: Packs<T>, Q: Field<T>, F: Values<T, Q>, const C: usize>(
         &self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         first: usize,
         value: &F,
         kept: &mut [[T; LANES]],
     ) {
-        for (k, kept) in kept.chunks_exact_mut(NB * Q::COMPONENTS).enumerate() {
-            let places = self.places(first + k);
+        // A copy: a compiler then knows that what is written leaves it alone.
+        let cloud = &{ *cloud };
+        for (n, kept) in kept.chunks_exact_mut(NB * Q::COMPONENTS).enumerate() {
+            let places = self.places(first + n);
             let group = CellGroup::new(cloud, places.clone());
-            let sums = group.sums::<OfValues, T, V, Q, NB, C>(cloud, places, value, cloud.volumes);
-            keep_sums::<T, V, NB, C>(&sums.right, Q::COMPONENTS, kept);
+            let sums = group.sums::<OfValues, T, K, Q, NB, C>(k, cloud, places, value, cloud.volumes);
+            keep_sums::<T, K, NB, C>(k, &sums.right, Q::COMPONENTS, kept);
         }
     }
 
@@ -64,24 +68,28 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
 
     /// Coefficients of what is integrated in four cells.
     #[inline(always)]
-    pub(super) fn integrated<V: Lanes<T>, Q: Field<T>, const C: usize>(
+    pub(super) fn integrated<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
+        k: K,
         group: usize,
-    ) -> Rights<V, NB, C> {
+    ) -> Rights<K::V, NB, C> {
         let sums = self.kept_sums::<Q>();
-        self.fits[group].integrated(group, &self.grams[group], &sums)
+        self.fits[group].integrated(k, group, &self.grams[group], &sums)
     }
 
     /// Streams the fits of whole cells, four at a time, and the other ones.
-    #[inline(never)]
-    pub(super) fn integrate_in<V: Lanes<T>, Q: Field<T>>(
+    #[inline(always)]
+    pub(super) fn integrate_in<K: Packs<T>, Q: Field<T>>(
         &self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         cells: Range<usize>,
         value: &impl Fn(usize) -> Q,
         sink: &mut impl FnMut(&Point<T, D>, Q),
     ) {
-        let mut coefficients = [[V::splat(T::zero()); MOST_COMPONENTS]; NB];
+        // A copy: a compiler then knows that what is written leaves it alone.
+        let cloud = &{ *cloud };
+        let mut coefficients = [[k.splat(T::zero()); MOST_COMPONENTS]; NB];
         let mut at_hand = None;
         for place in cells {
             if self.cells[place].kind != Kind::Four {
@@ -90,15 +98,14 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             }
             if at_hand != Some(place / LANES) {
                 at_hand = Some(place / LANES);
-                coefficients = self.integrated::<V, Q, MOST_COMPONENTS>(place / LANES);
+                coefficients = self.integrated::<K, Q, MOST_COMPONENTS>(k, place / LANES);
             }
-            let of_cell = std::array::from_fn(|k| {
-                let mut coefficient = Q::zero();
+            let mut of_cell = [Q::zero(); NB];
+            for n in 0..NB {
                 for q in 0..Q::COMPONENTS {
-                    coefficient.set_component(q, coefficients[k][q].array()[place % LANES]);
+                    of_cell[n].set_component(q, k.array(coefficients[n][q])[place % LANES]);
                 }
-                coefficient
-            });
+            }
             let patch = Patch::whole(cloud.grid, cloud.bins.occupied()[place] as usize);
             self.rule.emit(&patch, &of_cell, sink);
         }

@@ -5,10 +5,10 @@ use std::ops::Range;
 use super::runs::{Run, sums_of_runs};
 use crate::field::Field;
 use crate::grid::Cell;
-use crate::lanes::{LANES, Lanes};
 use crate::reconstruction::values::lanes_of;
 use crate::reconstruction::{Cloud, Values, four_cells};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Packs, each, in_lanes};
 use crate::taylor::{FourSums, taylor_lanes};
 
 /// Up to four occupied cells with their particles; spare lanes repeat the last cell.
@@ -87,53 +87,65 @@ impl<const D: usize> CellGroup<D> {
     pub(in super::super) fn sums<
         S: Sought,
         T: Scalar,
-        V: Lanes<T>,
+        K: Packs<T>,
         Q: Field<T>,
         const NB: usize,
         const C: usize,
     >(
         &self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         places: Range<usize>,
         values: &impl Values<T, Q>,
         amounts: &[T],
-    ) -> FourSums<V, NB, C> {
+    ) -> FourSums<K::V, NB, C> {
         if const { D > 1 } {
-            return self.sums_one_by_one::<S, T, V, Q, NB, C>(cloud, values, amounts);
+            return self.sums_one_by_one::<S, T, K, Q, NB, C>(k, cloud, values, amounts);
         }
         match Run::all(cloud.bins, &self.numbers, cloud.positions.len()) {
-            Some(runs) => sums_of_runs::<S, T, V, Q, D, NB, C>(cloud, &runs, &self.cells, values, amounts),
-            None => Self::sums_apart::<S, T, V, Q, NB, C>(cloud, places, values, amounts),
+            Some(runs) => sums_of_runs::<S, T, K, Q, D, NB, C>(k, cloud, &runs, &self.cells, values, amounts),
+            None => Self::sums_apart::<S, T, K, Q, NB, C>(k, cloud, places, values, amounts),
         }
     }
 
     /// [`CellGroup::sums_one_by_one`], out of the way of the code that usually runs.
     #[inline(never)]
-    fn sums_apart<S: Sought, T: Scalar, V: Lanes<T>, Q: Field<T>, const NB: usize, const C: usize>(
+    fn sums_apart<S: Sought, T: Scalar, K: Packs<T>, Q: Field<T>, const NB: usize, const C: usize>(
+        k: K,
         cloud: &Cloud<'_, T, D>,
         places: Range<usize>,
         values: &impl Values<T, Q>,
         amounts: &[T],
-    ) -> FourSums<V, NB, C> {
-        Self::new(cloud, places).sums_one_by_one::<S, T, V, Q, NB, C>(cloud, values, amounts)
+    ) -> FourSums<K::V, NB, C> {
+        k.run(
+            #[inline(always)]
+            || Self::new(cloud, places).sums_one_by_one::<S, T, K, Q, NB, C>(k, cloud, values, amounts),
+        )
     }
 
     /// The same wherever the particles are, one of each cell at a time.
     #[inline(always)]
-    fn sums_one_by_one<S: Sought, T: Scalar, V: Lanes<T>, Q: Field<T>, const NB: usize, const C: usize>(
+    fn sums_one_by_one<S: Sought, T: Scalar, K: Packs<T>, Q: Field<T>, const NB: usize, const C: usize>(
         &self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         values: &impl Values<T, Q>,
         amounts: &[T],
-    ) -> FourSums<V, NB, C> {
-        let mut sums = FourSums::new();
-        let particles: [&[u32]; LANES] = std::array::from_fn(|l| cloud.bins.particles_in(self.numbers[l]));
-        for k in 0..self.longest() {
-            let (numbers, mut weight) = self.points::<T, V>(&particles, k);
-            let psi = taylor_lanes::<T, V, D, NB>(&self.local(cloud, &numbers));
+    ) -> FourSums<K::V, NB, C> {
+        let mut sums = FourSums::new(k);
+        let particles: [&[u32]; LANES] = each(
+            #[inline(always)]
+            |l| cloud.bins.particles_in(self.numbers[l]),
+        );
+        for n in 0..self.longest() {
+            let (numbers, mut weight) = self.points::<T, K>(k, &particles, n);
+            let psi = taylor_lanes::<T, K, D, NB>(k, &self.local(k, cloud, &numbers));
             let mut first = weight;
             if S::WEIGHTED || S::CONSERVED {
-                first = V::new(std::array::from_fn(|l| amounts[numbers[l]])) * weight;
+                first = k.new(in_lanes(
+                    #[inline(always)]
+                    |l| amounts[numbers[l]],
+                )) * weight;
             }
             if S::WEIGHTED {
                 weight = first;
@@ -142,30 +154,63 @@ impl<const D: usize> CellGroup<D> {
                 sums.add_products(&psi, weight, 0);
             }
             if S::VALUES {
-                let values = lanes_of::<T, V, Q, C>(|l| values.at(numbers[l]));
+                let values = lanes_of::<T, K, Q, C>(
+                    k,
+                    #[inline(always)]
+                    |l| values.at(numbers[l]),
+                );
                 sums.add_values(&psi, weight, first, &values, Q::COMPONENTS);
             }
         }
         sums
     }
 
-    /// The `k`-th particle of each cell, and one; the last particle and zero where there are fewer.
+    /// The `n`-th particle of each cell, and one; the last particle and zero where there are fewer.
     #[inline(always)]
-    fn points<T: Scalar, V: Lanes<T>>(&self, particles: &[&[u32]; LANES], k: usize) -> ([usize; LANES], V) {
-        let numbers = std::array::from_fn(|l| particles[l][k.min(self.counts[l] - 1)] as usize);
-        let weights = std::array::from_fn(|l| if k < self.counts[l] { T::one() } else { T::zero() });
-        (numbers, V::new(weights))
+    fn points<T: Scalar, K: Packs<T>>(
+        &self,
+        k: K,
+        particles: &[&[u32]; LANES],
+        n: usize,
+    ) -> ([usize; LANES], K::V) {
+        let numbers = each(
+            #[inline(always)]
+            |l| particles[l][n.min(self.counts[l] - 1)] as usize,
+        );
+        let weights = each(
+            #[inline(always)]
+            |l| if n < self.counts[l] { T::one() } else { T::zero() },
+        );
+        (numbers, k.new(weights))
     }
 
     /// Local coordinates of one particle of each cell.
     #[inline(always)]
-    fn local<T: Scalar, V: Lanes<T>>(&self, cloud: &Cloud<'_, T, D>, numbers: &[usize; LANES]) -> [V; D] {
-        let x: [_; LANES] = std::array::from_fn(|l| &cloud.positions[numbers[l]]);
-        let (two, one) = (V::splat(T::lit(2.0)), V::splat(T::one()));
-        std::array::from_fn(|a| {
-            let x = V::new(std::array::from_fn(|l| x[l][a])) - V::splat(cloud.grid.min()[a]);
-            let cell = V::new(std::array::from_fn(|l| T::lit(f64::from(self.cells[l][a]))));
-            (x * V::splat(cloud.grid.inverse_cell_size()[a]) - cell) * two - one
-        })
+    fn local<T: Scalar, K: Packs<T>>(
+        &self,
+        k: K,
+        cloud: &Cloud<'_, T, D>,
+        numbers: &[usize; LANES],
+    ) -> [K::V; D] {
+        let x: [_; LANES] = each(
+            #[inline(always)]
+            |l| &cloud.positions[numbers[l]],
+        );
+        let (two, one) = (k.splat(T::lit(2.0)), k.splat(T::one()));
+        each(
+            #[inline(always)]
+            |a| {
+                let x = k.new(in_lanes(
+                    #[inline(always)]
+                    |l| x[l][a],
+                ));
+                let cell = k.new(in_lanes(
+                    #[inline(always)]
+                    |l| T::lit(f64::from(self.cells[l][a])),
+                ));
+                let along = (x - k.splat(cloud.grid.min()[a])) * k.splat(cloud.grid.inverse_cell_size()[a]);
+                (along - cell) * two - one
+            },
+        )
     }
 }

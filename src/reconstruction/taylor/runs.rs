@@ -8,11 +8,11 @@ use std::ops::Range;
 use super::cell_group::Sought;
 use crate::field::Field;
 use crate::grid::Cell;
-use crate::lanes::{LANES, Lanes};
 use crate::particles::Bins;
 use crate::reconstruction::values::{four_components, four_numbers};
 use crate::reconstruction::{Cloud, Values};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Packs, each, in_lanes};
 use crate::taylor::{FourSums, taylor_lanes};
 
 /// Particles that follow each other.
@@ -41,33 +41,34 @@ impl Run {
 
     /// Sums over the particles, which are those of `cell`, in parts that are spread over the lanes. Not inlined: among all that is done
     /// with them, a compiler would keep none of them in registers.
-    #[inline(never)]
+    #[inline(always)]
     fn sums<
         S: Sought,
         T: Scalar,
-        V: Lanes<T>,
+        K: Packs<T>,
         Q: Field<T>,
         const D: usize,
         const NB: usize,
         const C: usize,
     >(
         self,
+        k: K,
         cloud: &Cloud<'_, T, D>,
         cell: &Cell<D>,
         values: &impl Values<T, Q>,
         amounts: &[T],
-    ) -> FourSums<V, NB, C> {
-        let mut sums = FourSums::new();
+    ) -> FourSums<K::V, NB, C> {
+        let mut sums = FourSums::new(k);
         let mut first = self.first;
         // Full fours have a loop of their own, in which a compiler knows that the ones are ones.
         while first + LANES <= self.end {
-            let ones = V::splat(T::one());
-            add_four::<S, T, V, Q, D, NB, C>(&mut sums, cloud, cell, first, ones, values, amounts);
+            let ones = k.splat(T::one());
+            add_four::<S, T, K, Q, D, NB, C>(k, &mut sums, cloud, cell, first, ones, values, amounts);
             first += LANES;
         }
         if first < self.end {
-            let ones = first_ones(self.end - first);
-            add_four::<S, T, V, Q, D, NB, C>(&mut sums, cloud, cell, first, ones, values, amounts);
+            let ones = first_ones(k, self.end - first);
+            add_four::<S, T, K, Q, D, NB, C>(k, &mut sums, cloud, cell, first, ones, values, amounts);
         }
         sums
     }
@@ -78,24 +79,25 @@ impl Run {
 fn add_four<
     S: Sought,
     T: Scalar,
-    V: Lanes<T>,
+    K: Packs<T>,
     Q: Field<T>,
     const D: usize,
     const NB: usize,
     const C: usize,
 >(
-    sums: &mut FourSums<V, NB, C>,
+    k: K,
+    sums: &mut FourSums<K::V, NB, C>,
     cloud: &Cloud<'_, T, D>,
     cell: &Cell<D>,
     first: usize,
-    ones: V,
+    ones: K::V,
     values: &impl Values<T, Q>,
     amounts: &[T],
 ) {
-    let psi = taylor_lanes::<T, V, D, NB>(&frame(cloud, cell, first));
+    let psi = taylor_lanes::<T, K, D, NB>(k, &frame(k, cloud, cell, first));
     let (mut weight, mut alone) = (ones, ones);
     if S::WEIGHTED || S::CONSERVED {
-        alone = four_numbers::<T, V>(amounts, first) * ones;
+        alone = four_numbers::<T, K>(k, amounts, first) * ones;
     }
     if S::WEIGHTED {
         weight = alone;
@@ -105,36 +107,40 @@ fn add_four<
         sums.add_products(&psi, weight, usize::from(!S::WEIGHTED));
     }
     if S::VALUES {
-        let field = values.four::<V, C>(first);
+        let field = values.four::<K, C>(k, first);
         sums.add_values(&psi, weight, alone, &field, Q::COMPONENTS);
     }
 }
 
 /// One in so many lanes, zero in the others.
 #[inline(always)]
-fn first_ones<T: Scalar, V: Lanes<T>>(count: usize) -> V {
+fn first_ones<T: Scalar, K: Packs<T>>(k: K, count: usize) -> K::V {
     let (zero, one) = (T::zero(), T::one());
     match count {
-        1 => V::new([one, zero, zero, zero]),
-        2 => V::new([one, one, zero, zero]),
-        3 => V::new([one, one, one, zero]),
-        _ => V::splat(one),
+        1 => k.new([one, zero, zero, zero]),
+        2 => k.new([one, one, zero, zero]),
+        3 => k.new([one, one, one, zero]),
+        _ => k.splat(one),
     }
 }
 
 /// Local coordinates of four particles of a cell.
 #[inline(always)]
-fn frame<T: Scalar, V: Lanes<T>, const D: usize>(
+fn frame<T: Scalar, K: Packs<T>, const D: usize>(
+    k: K,
     cloud: &Cloud<'_, T, D>,
     cell: &Cell<D>,
     first: usize,
-) -> [V; D] {
-    let (two, one) = (V::splat(T::lit(2.0)), V::splat(T::one()));
-    std::array::from_fn(|a| {
-        let x = four_components::<T, V, D>(cloud.positions, first, a) - V::splat(cloud.grid.min()[a]);
-        let index = V::splat(T::lit(f64::from(cell[a])));
-        (x * V::splat(cloud.grid.inverse_cell_size()[a]) - index) * two - one
-    })
+) -> [K::V; D] {
+    let (two, one) = (k.splat(T::lit(2.0)), k.splat(T::one()));
+    each(
+        #[inline(always)]
+        |a| {
+            let x = four_components::<T, K, D>(k, cloud.positions, first, a) - k.splat(cloud.grid.min()[a]);
+            let index = k.splat(T::lit(f64::from(cell[a])));
+            (x * k.splat(cloud.grid.inverse_cell_size()[a]) - index) * two - one
+        },
+    )
 }
 
 /// The sums of four cells, a cell in each lane.
@@ -142,23 +148,25 @@ fn frame<T: Scalar, V: Lanes<T>, const D: usize>(
 pub(super) fn sums_of_runs<
     S: Sought,
     T: Scalar,
-    V: Lanes<T>,
+    K: Packs<T>,
     Q: Field<T>,
     const D: usize,
     const NB: usize,
     const C: usize,
 >(
+    k: K,
     cloud: &Cloud<'_, T, D>,
     runs: &[Run; LANES],
     cells: &[Cell<D>; LANES],
     values: &impl Values<T, Q>,
     amounts: &[T],
-) -> FourSums<V, NB, C> {
-    let a = runs[0].sums::<S, T, V, Q, D, NB, C>(cloud, &cells[0], values, amounts);
-    let b = runs[1].sums::<S, T, V, Q, D, NB, C>(cloud, &cells[1], values, amounts);
-    let c = runs[2].sums::<S, T, V, Q, D, NB, C>(cloud, &cells[2], values, amounts);
-    let d = runs[3].sums::<S, T, V, Q, D, NB, C>(cloud, &cells[3], values, amounts);
-    let mut sums = FourSums::new();
+) -> FourSums<K::V, NB, C> {
+    let mut of_runs = [FourSums::new(k); LANES];
+    for l in 0..LANES {
+        of_runs[l] = runs[l].sums::<S, T, K, Q, D, NB, C>(k, cloud, &cells[l], values, amounts);
+    }
+    let [a, b, c, d] = &of_runs;
+    let mut sums = FourSums::new(k);
     for i in 0..NB {
         if S::PRODUCTS {
             for j in 0..i + 1 {
@@ -166,20 +174,22 @@ pub(super) fn sums_of_runs<
                     continue;
                 }
                 let parts = [a.gram[i][j], b.gram[i][j], c.gram[i][j], d.gram[i][j]];
-                sums.gram[i][j] = V::new(V::sums(parts));
+                sums.gram[i][j] = k.new(k.sums(parts));
             }
         }
         if S::VALUES {
             for q in 0..Q::COMPONENTS {
                 let parts = [a.right[i][q], b.right[i][q], c.right[i][q], d.right[i][q]];
-                sums.right[i][q] = V::new(V::sums(parts));
+                sums.right[i][q] = k.new(k.sums(parts));
             }
         }
     }
     if !S::WEIGHTED {
         // A conversion from 64 bits takes five times as long.
-        let count = |l: usize| T::lit(f64::from((runs[l].end - runs[l].first) as u32));
-        sums.gram[0][0] = V::new(std::array::from_fn(count));
+        sums.gram[0][0] = k.new(in_lanes(
+            #[inline(always)]
+            |l| T::lit(f64::from((runs[l].end - runs[l].first) as u32)),
+        ));
     }
     sums
 }

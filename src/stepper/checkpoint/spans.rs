@@ -13,7 +13,7 @@ use crate::grid::Grid;
 use crate::parallel::{CELLS, PARTICLES};
 use crate::particles::Bins;
 use crate::scalar::Scalar;
-use crate::stepper::spans::Spans;
+use crate::stepper::spans::{Spans, Store};
 
 impl<T: Scalar, const D: usize> Spans<T, D> {
     pub(super) fn save(&self, out: &mut Out<'_>) -> io::Result<()> {
@@ -24,9 +24,14 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
         out.count(cells / CELLS)?;
         out.indices(self.bounds.as_flattened())?;
         out.count(self.cells.capacity())?;
-        out.count(self.scalars.capacity())?;
-        out.count(self.vectors.capacity())?;
-        out.count(self.matrices.capacity())
+        let Store {
+            scalars,
+            vectors,
+            matrices,
+        } = &self.store;
+        scalars.iter().try_for_each(|store| out.count(store.capacity()))?;
+        vectors.iter().try_for_each(|store| out.count(store.capacity()))?;
+        matrices.iter().try_for_each(|store| out.count(store.capacity()))
     }
 
     /// `most` is more than any storage here has room for.
@@ -45,9 +50,15 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
         (self.stale, self.unknown) = (true, unknown);
         self.told = (!stale).then_some(joined);
         make_room(&mut self.cells, from.count()?, most);
-        make_room(&mut self.scalars, from.count()?, most);
-        make_room(&mut self.vectors, from.count()?, most);
-        make_room(&mut self.matrices, from.count()?, most);
+        for store in &mut self.store.scalars {
+            make_room(store, from.count()?, most);
+        }
+        for store in &mut self.store.vectors {
+            make_room(store, from.count()?, most);
+        }
+        for store in &mut self.store.matrices {
+            make_room(store, from.count()?, most);
+        }
         Ok(())
     }
 

@@ -136,8 +136,8 @@ where
         walls.for_each_held(|dof, axis, _, _| force[dof][axis] = T::zero());
         std::mem::swap(&mut self.particles.velocity, &mut self.contact.kicks);
         self.particles.velocity.fill(SVector::zeros());
-        self.update_particle_velocities(T::one());
-        self.map_momentum();
+        self.kick_particles(T::one());
+        self.map_momenta();
         // The particles' matrix is the one that the accelerations were solved with.
         self.divide_by_mass(rest, !R::PARTICLE_MATRIX);
         std::mem::swap(&mut self.particles.velocity, &mut self.contact.kicks);

@@ -3,16 +3,13 @@
 use nalgebra::SVector;
 
 use super::super::acceleration::Walls;
-use super::super::cell_sums::CellSums;
 use super::super::forces::{WEAK, fill_with_pairs};
 use super::super::ghost::lump_undetermined_cells;
-use super::super::lanes::Bodies;
 use super::super::matrix::MassMatrix;
 use super::super::{Forcing, Stepper};
 use super::joint::Joint;
 use super::seal::Components;
 use crate::basis::BasisFamily;
-use crate::field::Pair;
 use crate::law::LawSweep;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
@@ -27,7 +24,7 @@ where
     P: Phase<T, D>,
 {
     /// The matrices of both masses and of the drag.
-    pub(super) fn assemble_matrices(&mut self) {
+    pub(in super::super) fn assemble_joint_matrices(&mut self) {
         let (phase, particles) = (&self.phase, &self.particles);
         let n = phase.porosity();
         let Joint {
@@ -48,12 +45,8 @@ where
             (&drag_of[..], drag),
         ];
         for (masses, matrix) in filled {
-            let bodies = Bodies {
-                positions: &particles.position,
-                cells: self.bins.cells(),
-                masses,
-            };
-            fill_with_pairs(&self.basis, &self.grid, bodies, &mut self.pairs, matrix);
+            let bodies = (&particles.position[..], self.bins.cells());
+            fill_with_pairs(&self.basis, &self.grid, bodies, masses, &mut self.pairs, matrix);
             let space = (&self.basis, &self.grid, &self.bins);
             lump_undetermined_cells(space, &self.reconstruction, matrix);
             matrix.complete(Some(T::lit(WEAK)));
@@ -146,28 +139,6 @@ where
                 *velocity += *answer;
             }
         }
-    }
-
-    /// Momenta of the DOFs straight from the particles, with the masses of the matrices.
-    pub(super) fn map_particles_of_both(&mut self) {
-        let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
-        let (solid, liquid) = (&mut self.dofs.velocity[..], &mut self.liquid.velocity[..]);
-        solid.fill(SVector::zeros());
-        liquid.fill(SVector::zeros());
-        let mut momenta = CellSums::new(basis, grid);
-        let mut sink = |i: usize, Pair(q_s, q_w)| {
-            solid[i] += q_s;
-            liquid[i] += q_w;
-        };
-        let particles = &self.particles;
-        let places = particles.position.iter().zip(self.bins.cells());
-        let bodies = particles.mass.iter().zip(&self.joint.liquid_mass);
-        let motion = particles.velocity.iter().zip(&particles.phase);
-        for (((x, cell), (&m_s, &m_w)), (velocity, data)) in places.zip(bodies).zip(motion) {
-            let (q_s, q_w) = (velocity * m_s, phase.liquid(data).velocity * m_w);
-            momenta.add(cell, x, |phi, _| Pair(q_s * phi, q_w * phi), &mut sink);
-        }
-        momenta.flush(&mut sink);
     }
 }
 

@@ -14,8 +14,6 @@
 mod acceleration;
 mod consistent;
 mod critical;
-mod dof;
-mod forces;
 mod joint;
 mod relax;
 mod seal;
@@ -23,6 +21,6 @@ mod surface;
 mod velocity;
 
 pub(super) use critical::Coupled;
-pub(super) use dof::Sums;
 pub(super) use joint::Joint;
 pub(super) use seal::Seal;
+pub(super) use surface::EvenLoad;

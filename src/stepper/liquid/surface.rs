@@ -15,17 +15,25 @@ use crate::scalar::Scalar;
 
 /// An even state that balances the load of a surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct EvenLoad<T> {
+pub(in super::super) struct EvenLoad<T> {
     /// Total stress (Pa).
-    pub(super) stress: T,
+    pub(in super::super) stress: T,
     /// Pressure of the liquid (Pa).
-    pub(super) pressure: T,
+    pub(in super::super) pressure: T,
 }
 
 impl<T: Scalar> EvenLoad<T> {
+    /// Of no load.
+    pub(in super::super) fn none() -> Self {
+        Self {
+            stress: T::zero(),
+            pressure: T::zero(),
+        }
+    }
+
     /// Total stress and pressure of a particle less the even state.
     #[inline(always)]
-    pub(super) fn rest<const D: usize, P: Phase<T, D>>(
+    pub(in super::super) fn rest<const D: usize, P: Phase<T, D>>(
         &self,
         phase: &P,
         effective: &SMatrix<T, D, D>,
@@ -74,12 +82,9 @@ where
     /// even stress is taken from `sigma` and, times the normal, from the loads `t`. Taking the load of a surface itself leaves
     /// nothing to integrate where the body is in equilibrium with it, so that particles as quadrature points are exact there;
     /// a point load against their sum is not. Beyond one dimension no even state fits a load, and none is taken.
-    pub(super) fn even_load(&self, forcing: &Forcing<T, D>) -> EvenLoad<T> {
-        let mut even = EvenLoad {
-            stress: T::zero(),
-            pressure: T::zero(),
-        };
-        if D > 1 {
+    pub(in super::super) fn even_load(&self, forcing: &Forcing<T, D>) -> EvenLoad<T> {
+        let mut even = EvenLoad::none();
+        if D > 1 || !P::FLOWS {
             return even;
         }
         let free = |point: &&SurfacePoint<T>| !is_held(forcing, point);
@@ -97,7 +102,7 @@ where
     }
 
     /// What loads the surfaces besides the even part: tractions on the whole, pressures on the liquid where it passes.
-    pub(super) fn add_uneven_loads(&mut self, even: &EvenLoad<T>, forcing: &Forcing<T, D>) {
+    pub(in super::super) fn add_uneven_loads(&mut self, even: &EvenLoad<T>, forcing: &Forcing<T, D>) {
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
             let (axis, area, outward) = (point.face.axis, point.area, point.outward());
@@ -121,7 +126,7 @@ where
     }
 
     /// Finds the points of the surfaces that the liquid does not pass.
-    pub(super) fn find_seals(&mut self, forcing: &Forcing<T, D>) {
+    pub(in super::super) fn find_seals(&mut self, forcing: &Forcing<T, D>) {
         self.seal.clear();
         let shape = self.basis.dofs(&self.grid);
         for k in 0..self.surface.len() {

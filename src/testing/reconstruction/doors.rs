@@ -4,7 +4,7 @@
 use nalgebra::SVector;
 
 use super::stream::{Streamed, collect, largest_response, relative_error, uneven};
-use crate::lanes::{self, LANES, Lanes};
+use crate::simd::{LANES, Plain};
 use crate::reconstruction::{Cloud, Point, Reconstruction};
 use crate::scalar::Scalar;
 use crate::testing::failure::{Failure, Place, Property, near};
@@ -85,12 +85,13 @@ fn by_four<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     for first in (0..occupied.len()).step_by(LANES) {
         let places = first..occupied.len().min(first + LANES);
         let mut lanes_of_points: Vec<(usize, [T; LANES])> = Vec::new();
-        let outcome = reconstruction.integrate_four::<lanes::Four<T>, T>(
+        let outcome = reconstruction.integrate_four::<Plain, T>(
+            Plain,
             cloud,
             places.clone(),
             conserve,
             value,
-            |number, components| lanes_of_points.push((number, Lanes::<T>::array(components[0]))),
+            |number, components| lanes_of_points.push((number, components[0].0)),
         );
         for (lane, place) in places.enumerate() {
             let number = occupied[place] as usize;

@@ -2,11 +2,11 @@
 
 use nalgebra::SVector;
 
-use super::Pass;
+use super::Sweep;
 use crate::basis::{BasisFamily, Factors};
 use crate::grid::Cell;
-use crate::lanes::SideBySide;
 use crate::scalar::Scalar;
+use crate::simd::{Lanes, Number};
 
 /// The factors of one row: the value of the functions across it, and their slopes along the axes 1 and 2.
 #[derive(Clone, Copy)]
@@ -15,13 +15,17 @@ pub(super) struct Across<V> {
     pub(super) slope: [V; 2],
 }
 
-impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
+impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     /// The first DOF of `cell`.
     #[inline(always)]
     pub(super) fn first_dof(&self, cell: &Cell<D>) -> usize {
+        let first = self.basis.first_dofs(self.grid, cell);
         // Neighbours along axis 0 follow each other.
-        let others: usize = (1..D).map(|axis| cell[axis] as usize * self.strides[axis]).sum();
-        cell[0] as usize + others - self.before
+        let mut dof = first[0];
+        for axis in 1..D {
+            dof += first[axis] * self.strides[axis];
+        }
+        dof - self.before
     }
 
     /// Number of rows.
@@ -38,14 +42,14 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
         (deeper + k1 * self.strides[1], [k1, k2])
     }
 
-    /// Products of the factors across the row at `k`.
+    /// Products of the factors across the row at `[k1, k2]`.
     #[inline(always)]
-    pub(super) fn across<V: SideBySide<T>>(factors: &Factors<V, D>, [k1, k2]: [usize; 2]) -> Across<V> {
+    pub(super) fn across<K: Lanes<T>>(k: K, factors: &Factors<K::V, D>, [k1, k2]: [usize; 2]) -> Across<K::V> {
         let (value, slope) = (&factors.value, &factors.slope);
-        let zero = V::splat(T::zero());
+        let zero = k.splat(T::zero());
         if D == 1 {
             Across {
-                value: V::splat(T::one()),
+                value: k.splat(T::one()),
                 slope: [zero; 2],
             }
         } else if D == 3 {
@@ -63,21 +67,22 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
 
     /// Value of the field with the given DOFs, at the points with the given factors.
     #[inline(always)]
-    pub(super) fn value<V: SideBySide<T>>(
+    pub(super) fn value<K: Lanes<T>>(
         &self,
+        k: K,
         first: usize,
-        factors: &Factors<V, D>,
+        factors: &Factors<K::V, D>,
         dofs: &[SVector<T, D>],
-    ) -> [V; D] {
-        let mut result = [V::splat(T::zero()); D];
+    ) -> [K::V; D] {
+        let mut result = [k.splat(T::zero()); D];
         for row in 0..Self::ROWS {
-            let (offset, k) = self.row(row);
-            let across = Self::across(factors, k);
+            let (offset, place) = self.row(row);
+            let across = Self::across(k, factors, place);
             let dofs = &dofs[first + offset..first + offset + B::WIDTH];
             for c in 0..D {
-                let mut sum = factors.value[0][0] * V::splat(dofs[0][c]);
+                let mut sum = factors.value[0][0] * k.splat(dofs[0][c]);
                 for i in 1..B::WIDTH {
-                    sum = factors.value[0][i].mul_add(V::splat(dofs[i][c]), sum);
+                    sum = factors.value[0][i].mul_add(k.splat(dofs[i][c]), sum);
                 }
                 result[c] = sum.mul_add(across.value, result[c]);
             }
@@ -87,23 +92,24 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
 
     /// The same with the derivatives by the coordinates in cell sizes, component `c` by axis `a` at `[c][a]`.
     #[inline(always)]
-    pub(super) fn value_and_slopes<V: SideBySide<T>>(
+    pub(super) fn value_and_slopes<K: Lanes<T>>(
         &self,
+        k: K,
         first: usize,
-        factors: &Factors<V, D>,
+        factors: &Factors<K::V, D>,
         dofs: &[SVector<T, D>],
-    ) -> ([V; D], [[V; D]; D]) {
-        let zero = V::splat(T::zero());
+    ) -> ([K::V; D], [[K::V; D]; D]) {
+        let zero = k.splat(T::zero());
         let (mut value, mut slopes) = ([zero; D], [[zero; D]; D]);
         for row in 0..Self::ROWS {
-            let (offset, k) = self.row(row);
-            let across = Self::across(factors, k);
+            let (offset, place) = self.row(row);
+            let across = Self::across(k, factors, place);
             let dofs = &dofs[first + offset..first + offset + B::WIDTH];
             for c in 0..D {
-                let dof = V::splat(dofs[0][c]);
+                let dof = k.splat(dofs[0][c]);
                 let (mut sum, mut slope) = (factors.value[0][0] * dof, factors.slope[0][0] * dof);
                 for i in 1..B::WIDTH {
-                    let dof = V::splat(dofs[i][c]);
+                    let dof = k.splat(dofs[i][c]);
                     sum = factors.value[0][i].mul_add(dof, sum);
                     slope = factors.slope[0][i].mul_add(dof, slope);
                 }

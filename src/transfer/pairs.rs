@@ -3,11 +3,14 @@
 //! Functions are products along the axes, and so are products of two of them: of the 45 pairs that the nine functions of a
 //! quadratic cell in the plane make, only 36 = 6 x 6 sums differ, of the 378 in space 216.
 
-use super::Pass;
+use nalgebra::SVector;
+
+use super::Sweep;
+use super::group::{EachGroup, Group, come_in_eights, each_group};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
-use crate::grid::Cell;
-use crate::lanes::{LANES, Lanes, SideBySide};
+use crate::grid::{Cell, Grid};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Lanes, Number, Packs, dispatch_for, each};
 
 /// Most pairs of functions along an axis.
 const ALONG: usize = MOST_WIDTH * (MOST_WIDTH + 1) / 2;
@@ -20,7 +23,68 @@ pub(super) const fn pair(a: usize, b: usize) -> usize {
     high * (high + 1) / 2 + low
 }
 
+/// Hands `matrix(i, j, mass)`, `j <= i`, what particles add to the entries of the consistent mass matrix. Only for
+/// bases that are products on grids wide enough ([`sums_apply`]).
+#[inline(always)]
+pub(crate) fn sum_pairs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    basis: &B,
+    grid: &Grid<T, D>,
+    (positions, cells): (&[SVector<T, D>], &[Cell<D>]),
+    masses: &[T],
+    matrix: &mut impl FnMut(usize, usize, T),
+) {
+    let sweep = Sweep::new(basis, grid);
+    dispatch_for!(T, come_in_eights(cells), |k| {
+        let mut pass = PairsOfMasses {
+            k,
+            sweep: &sweep,
+            positions: &positions[..cells.len()],
+            cells,
+            masses: &masses[..cells.len()],
+            sums: PairSums::<_, D>::new::<T, _>(k),
+            matrix,
+        };
+        each_group(cells, &mut pass);
+        pass.sums.flush(k, &sweep, pass.matrix);
+    });
+}
+
+/// Whether [`sum_pairs`] can be used.
+pub(crate) fn sums_apply<T: Scalar, const D: usize, B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>) -> bool {
+    Sweep::new(basis, grid).is_in_packs()
+}
+
+/// The sweep over masses that go to the consistent matrix.
+struct PairsOfMasses<'a, T, K, V, const D: usize, B, M> {
+    k: K,
+    sweep: &'a Sweep<'a, T, D, B>,
+    positions: &'a [SVector<T, D>],
+    cells: &'a [Cell<D>],
+    masses: &'a [T],
+    sums: PairSums<V, D>,
+    matrix: &'a mut M,
+}
+
+impl<T, K, const D: usize, const N: usize, B, M> EachGroup<N> for PairsOfMasses<'_, T, K, K::V, D, B, M>
+where
+    T: Scalar,
+    K: Packs<T, N>,
+    B: BasisFamily<T, D>,
+    M: FnMut(usize, usize, T),
+{
+    #[inline(always)]
+    fn take<const FULL: bool>(&mut self, group: Group<N>) {
+        let (k, sweep) = (self.k, self.sweep);
+        let cell = &self.cells[group.first];
+        let x = group.vectors::<FULL, T, K, D>(k, self.positions);
+        let factors = sweep.factors(k, cell, &x);
+        let mass = group.amounts::<FULL, T, K>(k, self.masses);
+        self.sums.add(k, sweep, cell, &factors, mass, self.matrix);
+    }
+}
+
 /// One sum for each product of pairs along the axes, axis 0 fastest.
+#[derive(Clone, Copy)]
 pub(super) struct PairSums<V, const D: usize> {
     cell: Option<Cell<D>>,
     pub(super) sums: [V; MOST],
@@ -28,13 +92,10 @@ pub(super) struct PairSums<V, const D: usize> {
 
 impl<V: Copy, const D: usize> PairSums<V, D> {
     #[inline(always)]
-    pub(super) fn new<T: Scalar>() -> Self
-    where
-        V: SideBySide<T>,
-    {
+    pub(super) fn new<T: Scalar, K: Lanes<T, V = V>>(k: K) -> Self {
         Self {
             cell: None,
-            sums: [V::splat(T::zero()); MOST],
+            sums: [k.splat(T::zero()); MOST],
         }
     }
 
@@ -42,9 +103,9 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
     #[inline(always)]
     pub(super) fn add_to<T: Scalar, B: BasisFamily<T, D>>(&mut self, factors: &Factors<V, D>, mass: V)
     where
-        V: SideBySide<T>,
+        V: Number<T>,
     {
-        let count = Pass::<T, D, B>::PAIRS_ALONG;
+        let count = Sweep::<T, D, B>::PAIRS_ALONG;
         let mut products = [[mass; ALONG]; D];
         for axis in 0..D {
             let value = &factors.value[axis];
@@ -76,18 +137,19 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
 
     /// The same for points of `cell`, one after another; `matrix(i, j, sum)`, `j <= i`, takes what the cell before them adds.
     #[inline(always)]
-    pub(super) fn add<T: Scalar, B: BasisFamily<T, D>, const N: usize>(
+    pub(super) fn add<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, N, V = V>, const N: usize>(
         &mut self,
-        pass: &Pass<'_, T, D, B>,
+        k: K,
+        sweep: &Sweep<'_, T, D, B>,
         cell: &Cell<D>,
         factors: &Factors<V, D>,
         mass: V,
         matrix: &mut impl FnMut(usize, usize, T),
     ) where
-        V: Lanes<T, N>,
+        V: Number<T>,
     {
         if self.cell != Some(*cell) {
-            self.flush(pass, matrix);
+            self.flush(k, sweep, matrix);
             self.cell = Some(*cell);
         }
         self.add_to::<T, B>(factors, mass);
@@ -95,52 +157,59 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
 
     /// Hands the sums of the last cell over and starts again.
     #[inline(always)]
-    pub(super) fn flush<T: Scalar, B: BasisFamily<T, D>, const N: usize>(
+    pub(super) fn flush<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, N, V = V>, const N: usize>(
         &mut self,
-        pass: &Pass<'_, T, D, B>,
+        k: K,
+        sweep: &Sweep<'_, T, D, B>,
         matrix: &mut impl FnMut(usize, usize, T),
-    ) where
-        V: Lanes<T, N>,
-    {
+    ) {
         let Some(cell) = self.cell.take() else { return };
-        let zero = V::splat(T::zero());
+        let zero = k.splat(T::zero());
         let mut totals = [T::zero(); MOST];
-        let count = Pass::<T, D, B>::PAIRS_ALONG.pow(D as u32);
+        let count = Sweep::<T, D, B>::PAIRS_ALONG.pow(D as u32);
         for first in (0..count).step_by(LANES) {
-            let sums = V::sums(std::array::from_fn(|k| self.sums[first + k]));
+            let sums = k.sums(each(
+                #[inline(always)]
+                |n| self.sums[first + n],
+            ));
             totals[first..first + LANES].copy_from_slice(&sums);
         }
         self.sums[..count].fill(zero);
-        let first = pass.first_dof(&cell);
-        pass.each_pair(|i, j, number| matrix(first + i, first + j, totals[number]));
+        let first = sweep.first_dof(&cell);
+        sweep.each_pair(
+            #[inline(always)]
+            |i, j, number| matrix(first + i, first + j, totals[number]),
+        );
     }
 
     /// Where the lanes are those of four cells: hands over the sums of each cell that is not `left_out` and starts again.
     #[inline(always)]
-    pub(super) fn spread<T: Scalar, B: BasisFamily<T, D>>(
+    pub(super) fn spread<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, V = V>>(
         &mut self,
-        pass: &Pass<'_, T, D, B>,
+        k: K,
+        sweep: &Sweep<'_, T, D, B>,
         cells: &[Cell<D>],
         left_out: &[bool; LANES],
         matrix: &mut impl FnMut(usize, usize, T),
-    ) where
-        V: Lanes<T>,
-    {
-        let count = Pass::<T, D, B>::PAIRS_ALONG.pow(D as u32);
-        let first: [usize; LANES] = std::array::from_fn(|l| cells.get(l).map_or(0, |c| pass.first_dof(c)));
-        pass.each_pair(|i, j, number| {
-            let sums = self.sums[number].array();
+    ) {
+        let count = Sweep::<T, D, B>::PAIRS_ALONG.pow(D as u32);
+        let mut first = [0; LANES];
+        for (first, cell) in first.iter_mut().zip(cells) {
+            *first = sweep.first_dof(cell);
+        }
+        sweep.each_pair(#[inline(always)] |i, j, number| {
+            let sums = k.array(self.sums[number]);
             for l in 0..cells.len().min(LANES) {
                 if !left_out[l] {
                     matrix(first[l] + i, first[l] + j, sums[l]);
                 }
             }
         });
-        self.sums[..count].fill(V::splat(T::zero()));
+        self.sums[..count].fill(k.splat(T::zero()));
     }
 }
 
-impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
+impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     /// Pairs of functions along an axis.
     const PAIRS_ALONG: usize = B::WIDTH * (B::WIDTH + 1) / 2;
 
@@ -172,14 +241,10 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Pass<'_, T, D, B> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::SVector;
-    use wide::f64x4;
-
     use super::*;
     use crate::basis::{BSpline, Linear};
-    use crate::grid::Grid;
     use crate::mass::Lattice;
-    use crate::stepper::lanes::Bodies;
+    use crate::simd::{Four, Plain};
 
     /// Points that wander through a grid of three cells an axis, some cells of which get none and some many.
     fn check<const D: usize, B: BasisFamily<f64, D>>(basis: &B) {
@@ -190,12 +255,10 @@ mod tests {
         let masses: Vec<f64> = (0..60).map(|p| 1.0 + (p % 7) as f64).collect();
         let zeros = || Lattice::zeros(basis.dofs(&grid), basis.reach());
         let (mut found, mut expected) = (zeros(), zeros());
-        let bodies = Bodies {
-            positions: &positions,
-            cells: &cells,
-            masses: &masses,
-        };
-        Pass::new(basis, &grid).sum_pairs(bodies, &mut |i, j, mass| found.add(i, j, mass));
+        assert!(sums_apply(basis, &grid));
+        sum_pairs(basis, &grid, (&positions, &cells), &masses, &mut |i, j, mass| {
+            found.add(i, j, mass)
+        });
         for ((x, cell), &mass) in positions.iter().zip(&cells).zip(&masses) {
             basis.for_each(&grid, cell, x, |i, a, _| {
                 basis.for_each(&grid, cell, x, |j, b, _| {
@@ -229,16 +292,16 @@ mod tests {
     fn four_cells_get_their_own_and_one_that_is_left_out_nothing() {
         let grid = Grid::new(SVector::from([0.0]), SVector::from([5.0]), [5]).unwrap();
         let (basis, cells) = (Linear, [[0], [1], [2], [3]]);
-        let pass = Pass::new(&basis, &grid);
-        let mut sums = PairSums::<f64x4, 1>::new::<f64>();
-        let half = f64x4::splat(0.5);
+        let sweep = Sweep::new(&basis, &grid);
+        let mut sums = PairSums::<Four<f64>, 1>::new::<f64, _>(Plain);
+        let half = Four([0.5; 4]);
         let factors = Factors {
             value: [[half, half, half, half]],
             slope: [[half; MOST_WIDTH]],
         };
-        sums.add_to::<f64, Linear>(&factors, f64x4::new([4.0, 8.0, 12.0, 16.0]));
+        sums.add_to::<f64, Linear>(&factors, Four([4.0, 8.0, 12.0, 16.0]));
         let mut entries: Vec<(usize, usize, f64)> = Vec::new();
-        sums.spread(&pass, &cells, &[false, true, false, false], &mut |i, j, sum| {
+        sums.spread(Plain, &sweep, &cells, &[false, true, false, false], &mut |i, j, sum| {
             entries.push((i, j, sum));
         });
         entries.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));

@@ -1,0 +1,387 @@
+//! P2G from fits: forces, and masses and momenta of the DOFs, from polynomials fitted in each cell.
+//!
+//! Cells are fitted and integrated four at a time where reconstruction and basis can ([`transfer::fit`]), else streamed
+//! point by point: cell by cell where threads may share them, in one go otherwise.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::Dofs;
+use super::matrix::MassMatrix;
+use super::spans::{Spans, share};
+use super::sums::{InSpan, Targets};
+use crate::basis::BasisFamily;
+use crate::field::{Field, MassMomentum, Pair};
+use crate::mass::banded_row;
+use crate::parallel::{PerSpan, Windows, add_up, each_span};
+use crate::particles::Particles;
+use crate::phase::Phase;
+use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Values};
+use crate::scalar::Scalar;
+use crate::transfer::{self, Fits, Integrand, MassesAndMomenta, Parts, Stress, Sum, Sweep, at_fixed_points};
+
+/// What is fitted, and in which functions it ends up.
+pub(super) struct Fitted<'a, 'c, T: Scalar, const D: usize, B, R> {
+    pub(super) basis: &'a B,
+    pub(super) reconstruction: &'a mut R,
+    pub(super) cloud: Cloud<'c, T, D>,
+    pub(super) spans: &'a mut Spans<T, D>,
+    /// Whether four cells are fitted at a time.
+    pub(super) by_four: bool,
+}
+
+impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> Fitted<'_, '_, T, D, B, R> {
+    /// `f_i = -integral(sigma grad phi_i)` of the stress, or of total stress and pressure, given at each particle.
+    pub(super) fn forces<const G: usize>(
+        self,
+        stress: impl Values<T, <Stress as Integrand<T, D, 0, 0, G, 0>>::Field> + Copy + Sync,
+        targets: Targets<'_, T, D, 0, 0, G>,
+    ) where
+        Stress: Integrand<T, D, 0, 0, G, 0>,
+    {
+        self.reconstruction.take_in_field(&self.cloud, &stress);
+        self.integrate::<Stress, 0, 0, G>(&stress, targets);
+    }
+
+    /// Masses and momenta of one phase or two, to row sums; `S` of the masses, zero where they are known already.
+    pub(super) fn lumped<Q: Field<T>, const S: usize, const C: usize>(
+        self,
+        densities: impl Values<T, Q> + Copy + Sync,
+        targets: Targets<'_, T, D, S, C, 0>,
+    ) where
+        MassesAndMomenta<Q>: Integrand<T, D, S, C, 0, 0, Field = Q>,
+    {
+        self.integrate::<MassesAndMomenta<Q>, S, C, 0>(&densities, targets);
+    }
+
+    fn integrate<I, const S: usize, const C: usize, const G: usize>(
+        self,
+        value: &(impl Values<T, I::Field> + Copy + Sync),
+        mut targets: Targets<'_, T, D, S, C, G>,
+    ) where
+        I: Integrand<T, D, S, C, G, 0>,
+    {
+        let (basis, cloud) = (self.basis, &self.cloud);
+        let amount = |p: usize| amount_of(value.at(p), I::CONSERVED, cloud.volumes[p]);
+        if !R::BY_CELLS {
+            let mut sums = InSpan::whole(targets);
+            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, |dof, sum| sums.add(dof, sum));
+            return match I::CONSERVED {
+                true => self.reconstruction.integrate_conserved(cloud, amount, sink),
+                false => self.reconstruction.integrate(cloud, amount, sink),
+            };
+        }
+        let reconstruction = &*self.reconstruction;
+        let occupied = cloud.bins.occupied();
+        let Spans {
+            cells: spans,
+            lengths,
+            store,
+            reduced,
+            ..
+        } = self.spans;
+        let (span, parallel) = share::<D>(spans, occupied.len(), lengths[1]);
+        reduced.fill(0);
+        let work = (
+            occupied,
+            store.windows(spans, &mut targets),
+            PerSpan(&mut reduced[..]),
+        );
+        let by_four = self.by_four;
+        each_span(parallel, span, work, &|place, (cells, windows, reduced)| {
+            // By value: references to the slices would be read anew for each DOF.
+            let mut sums = InSpan::new(windows);
+            let cells = place..place + cells.len();
+            if const { transfer::fit::<T, D, B, R>() } && by_four {
+                let fits = Fits {
+                    moving: basis,
+                    reconstruction,
+                    cloud,
+                    cells,
+                };
+                let mut sink = move |dof: usize, sum| sums.add(dof, sum);
+                let found = at_fixed_points!(B, basis, |basis| Sweep::new(basis, cloud.grid)
+                    .integrate::<_, _, I, S, C, G, 0>(&fits, value, &mut sink, &mut |_, _, _, _| ()));
+                return reduced.set(found);
+            }
+            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, |dof, sum| sums.add(dof, sum));
+            match I::CONSERVED {
+                true => reconstruction.integrate_conserved_cells(cloud, cells, amount, sink),
+                false => reconstruction.integrate_cells(cloud, cells, amount, sink),
+            }
+        });
+        store.add_up(spans, &mut targets);
+    }
+
+    /// Momenta and mass matrices of one phase or two.
+    pub(super) fn matrices<Q: Field<T>, const C: usize>(
+        self,
+        densities: impl Values<T, Q> + Copy + Sync,
+        dofs: [&mut Dofs<T, D>; C],
+    ) where
+        MassesAndMomenta<Q>: Integrand<T, D, 0, C, 0, C, Field = Q>,
+    {
+        match D {
+            1 => self.bands(&densities, dofs),
+            _ => self.lattices(&densities, dofs),
+        }
+    }
+
+    /// The same along one axis.
+    fn bands<Q: Field<T>, const C: usize>(
+        self,
+        densities: &(impl Values<T, Q> + Copy + Sync),
+        dofs: [&mut Dofs<T, D>; C],
+    ) where
+        MassesAndMomenta<Q>: Integrand<T, D, 0, C, 0, C, Field = Q>,
+    {
+        let (basis, cloud) = (self.basis, &self.cloud);
+        let half_band = basis.half_band(cloud.grid);
+        let width = half_band + 1;
+        let amount = |p: usize| amount_of(densities.at(p), true, cloud.volumes[p]);
+        let mut momenta = [const { None }; C];
+        let mut bands = [const { None }; C];
+        for (q, dofs) in dofs.into_iter().enumerate() {
+            let Dofs { matrix, velocity, .. } = dofs;
+            (bands[q], momenta[q]) = (Some(matrix.band_mut().rows_mut()), Some(&mut velocity[..]));
+        }
+        let mut rows: [&mut [T]; C] = bands.map(Option::unwrap_or_default);
+        let targets = Targets {
+            scalars: [],
+            vectors: momenta.map(Option::unwrap_or_default),
+            forces: [],
+        };
+        let mut targets: Targets<'_, T, D, 0, C, 0> = targets;
+        if !R::BY_CELLS {
+            rows.iter_mut().for_each(|rows| rows.fill(T::zero()));
+            let mut sums = InSpan::whole(targets);
+            let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(
+                basis,
+                cloud,
+                |dof, sum| sums.add(dof, sum),
+                |q, i, j, mass| add_to_row(rows[q], i, j, half_band, mass),
+            );
+            return self.reconstruction.integrate_conserved(cloud, amount, sink);
+        }
+        let reconstruction = &*self.reconstruction;
+        let occupied = cloud.bins.occupied();
+        let Spans {
+            cells: spans,
+            lengths,
+            store,
+            ..
+        } = self.spans;
+        let (span, parallel) = share::<D>(spans, occupied.len(), lengths[1]);
+        let super::spans::Store {
+            vectors, matrices, ..
+        } = store;
+        let mut stores = matrices.iter_mut();
+        let of_rows: [Windows<'_, T>; C] = rows.each_mut().map(|rows| match stores.next() {
+            Some(store) => Windows::new(spans, store, rows, width),
+            None => Windows::default(),
+        });
+        let of_momenta = super::sums::windows(spans, vectors, targets.vectors.each_mut().map(|t| &mut **t));
+        let by_four = self.by_four;
+        let work = (occupied, of_rows, of_momenta);
+        each_span(parallel, span, work, &|place, (cells, rows, momenta)| {
+            let mut first = 0;
+            let rows: [&mut [T]; C] = rows.map(|window| {
+                let (start, rows) = window.one();
+                first = start;
+                rows
+            });
+            let mut sums = InSpan::new(([], momenta, []));
+            let cells = place..place + cells.len();
+            // By value: references to the slices would be read anew for each DOF.
+            let mut sink = move |dof: usize, sum: Sum<T, D, 0, C, 0>| sums.add(dof, sum);
+            let mut matrix = move |q: usize, i: usize, j: usize, mass: T| {
+                add_to_row(rows[q], i - first, j - first, half_band, mass);
+            };
+            if const { transfer::fit::<T, D, B, R>() } && by_four {
+                let fits = Fits {
+                    moving: basis,
+                    reconstruction,
+                    cloud,
+                    cells,
+                };
+                at_fixed_points!(B, basis, |basis| {
+                    Sweep::new(basis, cloud.grid).integrate::<_, _, MassesAndMomenta<Q>, 0, C, 0, C>(
+                        &fits,
+                        densities,
+                        &mut sink,
+                        &mut matrix,
+                    );
+                });
+                return;
+            }
+            let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, sink, matrix);
+            reconstruction.integrate_conserved_cells(cloud, cells, amount, sink);
+        });
+        for (store, rows) in matrices.iter().zip(&mut rows) {
+            add_up(spans, store, rows, width);
+        }
+        for (store, momenta) in vectors.iter().zip(&mut targets.vectors) {
+            add_up(spans, store, momenta, 1);
+        }
+    }
+
+    /// The same beyond one axis.
+    fn lattices<Q: Field<T>, const C: usize>(
+        self,
+        densities: &(impl Values<T, Q> + Copy + Sync),
+        dofs: [&mut Dofs<T, D>; C],
+    ) where
+        MassesAndMomenta<Q>: Integrand<T, D, 0, C, 0, C, Field = Q>,
+    {
+        let (basis, cloud) = (self.basis, &self.cloud);
+        let mut momenta = [const { None }; C];
+        let mut matrices = [const { None }; C];
+        for (q, dofs) in dofs.into_iter().enumerate() {
+            let Dofs { matrix, velocity, .. } = dofs;
+            matrix.clear();
+            (matrices[q], momenta[q]) = (Some(matrix), Some(&mut velocity[..]));
+        }
+        let mut matrices: [Option<&mut MassMatrix<T, D>>; C] = matrices;
+        let targets: Targets<'_, T, D, 0, C, 0> = Targets {
+            scalars: [],
+            vectors: momenta.map(Option::unwrap_or_default),
+            forces: [],
+        };
+        let mut sums = InSpan::whole(targets);
+        let mut sink = |dof: usize, sum: Sum<T, D, 0, C, 0>| sums.add(dof, sum);
+        let mut matrix = |q: usize, i: usize, j: usize, mass: T| {
+            if let Some(matrix) = &mut matrices[q] {
+                matrix.add(i, j, mass);
+            }
+        };
+        if const { transfer::fit::<T, D, B, R>() } && self.by_four {
+            let fits = Fits {
+                moving: basis,
+                reconstruction: &*self.reconstruction,
+                cloud,
+                cells: 0..cloud.bins.occupied().len(),
+            };
+            at_fixed_points!(B, basis, |basis| {
+                Sweep::new(basis, cloud.grid).integrate::<_, _, MassesAndMomenta<Q>, 0, C, 0, C>(
+                    &fits,
+                    densities,
+                    &mut sink,
+                    &mut matrix,
+                );
+            });
+            return;
+        }
+        let amount = |p: usize| amount_of(densities.at(p), true, cloud.volumes[p]);
+        let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, sink, matrix);
+        self.reconstruction.integrate_conserved(cloud, amount, sink);
+    }
+}
+
+/// A value, or the amount that a particle of this volume holds of a density.
+#[inline(always)]
+fn amount_of<T: Scalar, Q: Field<T>>(value: Q, conserved: bool, volume: T) -> Q {
+    if conserved { value.scaled(volume) } else { value }
+}
+
+#[inline(always)]
+fn add_to_row<T: Scalar>(rows: &mut [T], i: usize, j: usize, half_band: usize, mass: T) {
+    banded_row(rows, i, half_band)[half_band + j - i] += mass;
+}
+
+/// What a point of a stream adds to DOFs.
+#[inline(always)]
+fn stream<'a, I, T, const D: usize, B, const S: usize, const C: usize, const G: usize>(
+    basis: &'a B,
+    cloud: &'a Cloud<'_, T, D>,
+    mut sink: impl FnMut(usize, Sum<T, D, S, C, G>) + 'a,
+) -> impl FnMut(&Point<T, D>, I::Field) + 'a
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    I: Integrand<T, D, S, C, G, 0>,
+{
+    move |point, value| {
+        let parts = I::parts(&transfer::components_of::<T, I::Field>(&value), &[T::one(); D]);
+        let add = |dof: usize, phi: T, gradient: SVector<T, D>| sink(dof, Sum::of(&parts, phi, &gradient));
+        if point.moves {
+            basis.for_each(cloud.grid, &point.cell, &point.position, add);
+        } else {
+            basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);
+        }
+    }
+}
+
+/// The same with masses that go to matrices: `matrix(q, i, j, mass)`, `j <= i`.
+#[inline(always)]
+fn stream_pairs<'a, I, T, const D: usize, B, const C: usize>(
+    basis: &'a B,
+    cloud: &'a Cloud<'_, T, D>,
+    mut sink: impl FnMut(usize, Sum<T, D, 0, C, 0>) + 'a,
+    mut matrix: impl FnMut(usize, usize, usize, T) + 'a,
+) -> impl FnMut(&Point<T, D>, I::Field) + 'a
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    I: Integrand<T, D, 0, C, 0, C>,
+{
+    move |point, value| {
+        let value = transfer::components_of::<T, I::Field>(&value);
+        let parts: Parts<T, D, 0, C, 0> = I::parts(&value, &[T::one(); D]);
+        let masses: [T; C] = I::masses(&value);
+        let (cell, x) = (&point.cell, &point.position);
+        basis.for_each_at_fixed_point(cloud.grid, cell, x, |i, phi, gradient| {
+            sink(i, Sum::of(&parts, phi, &gradient));
+            basis.for_each_at_fixed_point(cloud.grid, cell, x, |j, other, _| {
+                if j <= i {
+                    for q in 0..C {
+                        matrix(q, i, j, masses[q] * phi * other);
+                    }
+                }
+            });
+        });
+    }
+}
+
+/// Densities of mass and momentum of one phase.
+pub(super) fn densities<'a, T: Scalar, const D: usize, N, P>(
+    particles: &'a Particles<T, D, N, P>,
+) -> Densities<'a, T, D> {
+    Densities {
+        masses: &particles.mass,
+        velocities: &particles.velocity,
+        volumes: &particles.volume,
+    }
+}
+
+/// Densities of mass and momentum of solid and liquid.
+pub(super) struct DensitiesOfBoth<'a, T: Scalar, const D: usize, P: Phase<T, D>> {
+    pub(super) solid: Densities<'a, T, D>,
+    pub(super) data: &'a [P::Particle],
+    pub(super) phase: &'a P,
+}
+
+impl<T: Scalar, const D: usize, P: Phase<T, D>> Clone for DensitiesOfBoth<'_, T, D, P> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: Scalar, const D: usize, P: Phase<T, D>> Copy for DensitiesOfBoth<'_, T, D, P> {}
+
+/// Of solid and liquid.
+type Both<T, const D: usize> = Pair<MassMomentum<T, D>, MassMomentum<T, D>>;
+
+impl<T: Scalar, const D: usize, P: Phase<T, D>> Values<T, Both<T, D>> for DensitiesOfBoth<'_, T, D, P> {
+    #[inline(always)]
+    fn at(&self, p: usize) -> Both<T, D> {
+        let volume = self.solid.volumes[p];
+        let mass = self.phase.liquid_mass(volume) / volume;
+        let liquid = MassMomentum {
+            mass,
+            momentum: self.phase.liquid(&self.data[p]).velocity * mass,
+        };
+        Pair(self.solid.at(p), liquid)
+    }
+}
+
+/// Total stress and pressure, each less an even load.
+pub(super) type StressAndPressure<T, const D: usize> = Pair<SMatrix<T, D, D>, T>;

@@ -1,0 +1,413 @@
+//! P2G: masses, momenta and forces of the DOFs, straight from the particles.
+//!
+//! Everything that a DOF is to know of the particles is summed in as few sweeps as possible: with plain particles
+//! masses and forces in one, and with a liquid that flows both masses, the drag, both momenta and both forces.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::Dofs;
+use super::liquid::EvenLoad;
+use super::spans::{Spans, Store, share};
+use crate::basis::BasisFamily;
+use crate::grid::Grid;
+use crate::parallel::{SpanWindow, Windows, add_up, each_span};
+use crate::particles::{Bins, Particles};
+use crate::phase::Phase;
+use crate::scalar::Scalar;
+use crate::simd::{Packs, each, in_lanes};
+use crate::transfer::{Contribution, Group, Parts, Sum, for_values, p2g};
+
+/// What particles add to DOFs: `S` of the solid's mass, the liquid's and the drag, `C` of both momenta, `G` of the forces on
+/// the whole and on the liquid.
+pub(super) struct Amounts<'a, T: Scalar, const D: usize, P: Phase<T, D>> {
+    pub(super) masses: &'a [T],
+    pub(super) volumes: &'a [T],
+    pub(super) velocities: &'a [SVector<T, D>],
+    pub(super) stresses: &'a [SMatrix<T, D, D>],
+    pub(super) data: &'a [P::Particle],
+    pub(super) phase: &'a P,
+    /// Taken from stress and pressure.
+    pub(super) even: EvenLoad<T>,
+}
+
+impl<T, const D: usize, P, const S: usize, const C: usize, const G: usize> Contribution<T, D, S, C, G>
+    for Amounts<'_, T, D, P>
+where
+    T: Scalar,
+    P: Phase<T, D>,
+{
+    #[inline(always)]
+    fn cut(self, count: usize) -> Self {
+        Self {
+            masses: &self.masses[..count],
+            volumes: &self.volumes[..count],
+            velocities: &self.velocities[..count],
+            stresses: &self.stresses[..count],
+            data: &self.data[..count],
+            ..self
+        }
+    }
+
+    #[inline(always)]
+    fn parts<K: Packs<T, N>, const N: usize, const FULL: bool>(
+        &self,
+        k: K,
+        group: Group<N>,
+        slopes: &[K::V; D],
+    ) -> Parts<K::V, D, S, C, G> {
+        let zero = k.splat(T::zero());
+        let mass = group.amounts::<FULL, T, K>(k, self.masses);
+        let mut scalars = [mass; S];
+        let mut liquid_mass = zero;
+        if S > 1 || C > 1 {
+            liquid_mass = group.amounts_of(
+                k,
+                #[inline(always)]
+                |p| self.phase.liquid_mass(self.volumes[p]),
+            );
+        }
+        if S > 1 {
+            scalars[1] = liquid_mass;
+            scalars[S - 1] = group.amounts_of(
+                k,
+                #[inline(always)]
+                |p| self.phase.drag(self.masses[p], self.volumes[p]),
+            );
+        }
+        let mut vectors = [[zero; D]; C];
+        if C > 0 {
+            let velocity = group.vectors::<FULL, T, K, D>(k, self.velocities);
+            for c in 0..D {
+                vectors[0][c] = velocity[c] * mass;
+            }
+        }
+        if C > 1 {
+            let velocity = liquid_velocities::<T, D, P, K, N>(k, group, self.phase, self.data);
+            for c in 0..D {
+                vectors[C - 1][c] = velocity[c] * liquid_mass;
+            }
+        }
+        let mut tensors = [[[zero; D]; D]; G];
+        if G > 0 {
+            let volume = group.amounts::<FULL, T, K>(k, self.volumes);
+            let along: [K::V; D] = each(
+                #[inline(always)]
+                |a| volume * slopes[a],
+            );
+            let stress: [[K::V; D]; D] = group.with::<FULL, _, _>(
+                self.stresses,
+                #[inline(always)]
+                |lanes| {
+                    let total: [SMatrix<T, D, D>; N] = each(
+                        #[inline(always)]
+                        |l| self.total_stress::<G>(&lanes[l], group.particle(l)),
+                    );
+                    Group::<N>::tensors(k, &total)
+                },
+            );
+            for c in 0..D {
+                for a in 0..D {
+                    tensors[0][c][a] = stress[c][a] * along[a];
+                }
+            }
+            if G > 1 {
+                let pressure = group.amounts_of(
+                    k,
+                    #[inline(always)]
+                    |p| self.phase.liquid(&self.data[p]).pressure - self.even.pressure,
+                );
+                for c in 0..D {
+                    tensors[G - 1][c][c] = pressure * along[c];
+                }
+            }
+        }
+        Parts {
+            scalars,
+            vectors,
+            tensors,
+        }
+    }
+}
+
+impl<T: Scalar, const D: usize, P: Phase<T, D>> Clone for Amounts<'_, T, D, P> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: Scalar, const D: usize, P: Phase<T, D>> Copy for Amounts<'_, T, D, P> {}
+
+impl<T: Scalar, const D: usize, P: Phase<T, D>> Amounts<'_, T, D, P> {
+    /// What the balance of the whole feels of a particle's stress; with a liquid that flows less the even load.
+    #[inline(always)]
+    fn total_stress<const G: usize>(&self, effective: &SMatrix<T, D, D>, p: usize) -> SMatrix<T, D, D> {
+        if !P::COUPLED {
+            return *effective;
+        }
+        let mut total = self.phase.total_stress(effective, &self.data[p]);
+        if G > 1 {
+            for a in 0..D {
+                total[(a, a)] -= self.even.stress;
+            }
+        }
+        total
+    }
+}
+
+/// The components of the velocities of a group's liquid.
+#[inline(always)]
+pub(super) fn liquid_velocities<T: Scalar, const D: usize, P: Phase<T, D>, K: Packs<T, N>, const N: usize>(
+    k: K,
+    group: Group<N>,
+    phase: &P,
+    data: &[P::Particle],
+) -> [K::V; D] {
+    let velocities: [SVector<T, D>; N] = each(
+        #[inline(always)]
+        |l| phase.liquid(&data[group.particle(l)]).velocity,
+    );
+    each(
+        #[inline(always)]
+        |c| {
+            k.new(in_lanes(
+                #[inline(always)]
+                |l| velocities[l][c],
+            ))
+        },
+    )
+}
+
+/// Where sums go: `S` scalars, `C` momenta and `G` forces of the DOFs.
+pub(super) struct Targets<'a, T, const D: usize, const S: usize, const C: usize, const G: usize> {
+    pub(super) scalars: [&'a mut [T]; S],
+    pub(super) vectors: [&'a mut [SVector<T, D>]; C],
+    pub(super) forces: [&'a mut [SVector<T, D>]; G],
+}
+
+impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize> Targets<'a, T, D, S, C, G> {
+    /// Of the solid and, where there is one, of the liquid.
+    pub(super) fn new(solid: &'a mut Dofs<T, D>, liquid: &'a mut Dofs<T, D>, drag: &'a mut [T]) -> Self {
+        Self {
+            scalars: first([&mut solid.mass[..], &mut liquid.mass[..], drag]),
+            vectors: first([&mut solid.velocity[..], &mut liquid.velocity[..]]),
+            forces: first([&mut solid.force[..], &mut liquid.force[..]]),
+        }
+    }
+
+    /// Forces alone.
+    pub(super) fn of_forces(forces: [&'a mut [SVector<T, D>]; G]) -> Targets<'a, T, D, 0, 0, G> {
+        Targets {
+            scalars: [],
+            vectors: [],
+            forces,
+        }
+    }
+
+    /// Momenta alone.
+    pub(super) fn of_momenta(vectors: [&'a mut [SVector<T, D>]; C]) -> Targets<'a, T, D, 0, C, 0> {
+        Targets {
+            scalars: [],
+            vectors,
+            forces: [],
+        }
+    }
+
+    /// The same with the row sums of fitted masses in the place of those of the particles.
+    pub(super) fn fitted(solid: &'a mut Dofs<T, D>, liquid: &'a mut Dofs<T, D>) -> Self {
+        Self {
+            scalars: first([&mut solid.lumped[..], &mut liquid.lumped[..]]),
+            vectors: first([&mut solid.velocity[..], &mut liquid.velocity[..]]),
+            forces: first([&mut solid.force[..], &mut liquid.force[..]]),
+        }
+    }
+}
+
+/// The first so many.
+pub(super) fn first<A: Default, const M: usize, const N: usize>(all: [A; M]) -> [A; N] {
+    let mut all = all.into_iter();
+    std::array::from_fn(|_| all.next().unwrap_or_default())
+}
+
+/// Windows of spans for each of several targets.
+pub(super) fn windows<'a, Q: Copy + num_traits::Zero + Send, const N: usize>(
+    spans: &'a [SpanWindow],
+    stores: &'a mut [Vec<Q>],
+    targets: [&'a mut [Q]; N],
+) -> [Windows<'a, Q>; N] {
+    let mut stores = stores.iter_mut();
+    targets.map(|target| match stores.next() {
+        Some(store) => Windows::new(spans, store, target, 1),
+        None => Windows::default(),
+    })
+}
+
+/// Windows of spans for the targets of a sweep: first those of scalars, of momenta and of forces.
+type AllWindows<'a, T, const D: usize, const S: usize, const C: usize, const G: usize> = (
+    [Windows<'a, T>; S],
+    [Windows<'a, SVector<T, D>>; C],
+    [Windows<'a, SVector<T, D>>; G],
+);
+
+impl<T: Scalar, const D: usize> Store<T, D> {
+    /// Windows for `targets`.
+    pub(super) fn windows<'a, const S: usize, const C: usize, const G: usize>(
+        &'a mut self,
+        spans: &'a [SpanWindow],
+        targets: &'a mut Targets<'_, T, D, S, C, G>,
+    ) -> AllWindows<'a, T, D, S, C, G> {
+        let (of_momenta, of_forces) = self.vectors.split_at_mut(2);
+        (
+            windows(spans, &mut self.scalars, targets.scalars.each_mut().map(|t| &mut **t)),
+            windows(spans, of_momenta, targets.vectors.each_mut().map(|t| &mut **t)),
+            windows(spans, of_forces, targets.forces.each_mut().map(|t| &mut **t)),
+        )
+    }
+
+    /// Adds the sums of windows up in `targets`.
+    pub(super) fn add_up<const S: usize, const C: usize, const G: usize>(
+        &self,
+        spans: &[SpanWindow],
+        targets: &mut Targets<'_, T, D, S, C, G>,
+    ) {
+        let (of_momenta, of_forces) = self.vectors.split_at(2);
+        for (store, target) in self.scalars.iter().zip(&mut targets.scalars) {
+            add_up(spans, store, target, 1);
+        }
+        for (store, target) in of_momenta.iter().zip(&mut targets.vectors) {
+            add_up(spans, store, target, 1);
+        }
+        for (store, target) in of_forces.iter().zip(&mut targets.forces) {
+            add_up(spans, store, target, 1);
+        }
+    }
+}
+
+/// The windows of one span.
+pub(super) struct InSpan<'a, T, const D: usize, const S: usize, const C: usize, const G: usize> {
+    pub(super) first: usize,
+    scalars: [&'a mut [T]; S],
+    vectors: [&'a mut [SVector<T, D>]; C],
+    forces: [&'a mut [SVector<T, D>]; G],
+}
+
+impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize> InSpan<'a, T, D, S, C, G> {
+    #[inline(always)]
+    pub(super) fn new((scalars, vectors, forces): AllWindows<'a, T, D, S, C, G>) -> Self {
+        let mut first = 0;
+        Self {
+            scalars: scalars.map(|window| {
+                let (start, values) = window.one();
+                first = start;
+                values
+            }),
+            vectors: vectors.map(|window| {
+                let (start, values) = window.one();
+                first = start;
+                values
+            }),
+            forces: forces.map(|window| {
+                let (start, values) = window.one();
+                first = start;
+                values
+            }),
+            first,
+        }
+    }
+
+    /// All DOFs, with nothing in them yet.
+    pub(super) fn whole(targets: Targets<'a, T, D, S, C, G>) -> Self {
+        let Targets {
+            scalars,
+            vectors,
+            forces,
+        } = targets;
+        Self {
+            first: 0,
+            scalars: scalars.map(|values| {
+                values.fill(T::zero());
+                values
+            }),
+            vectors: vectors.map(|values| {
+                values.fill(SVector::zeros());
+                values
+            }),
+            forces: forces.map(|values| {
+                values.fill(SVector::zeros());
+                values
+            }),
+        }
+    }
+
+    /// Adds the sum of a DOF; what tensors give with gradients is taken off: forces.
+    #[inline(always)]
+    pub(super) fn add(&mut self, dof: usize, sum: Sum<T, D, S, C, G>) {
+        let i = dof - self.first;
+        for q in 0..S {
+            self.scalars[q][i] += sum.scalars[q];
+        }
+        for q in 0..C {
+            self.vectors[q][i] += sum.vectors[q];
+        }
+        for q in 0..G {
+            self.forces[q][i] -= sum.forces[q];
+        }
+    }
+}
+
+/// Sums over the particles, in as many spans as threads may share.
+#[inline(never)]
+pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C: usize, const G: usize>(
+    (basis, grid, bins): (&B, &Grid<T, D>, &Bins<D>),
+    particles: &Particles<T, D, N, P::Particle>,
+    (phase, even): (&P, EvenLoad<T>),
+    spans: &mut Spans<T, D>,
+    mut targets: Targets<'_, T, D, S, C, G>,
+) where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    P: Phase<T, D>,
+{
+    let Spans {
+        particles: spans,
+        lengths,
+        store,
+        ..
+    } = spans;
+    let (span, parallel) = share::<D>(spans, particles.position.len(), lengths[0]);
+    let work = (
+        (&particles.position[..], bins.cells()),
+        (&particles.mass[..], &particles.volume[..]),
+        (&particles.velocity[..], &particles.stress[..]),
+        &particles.phase[..],
+        store.windows(spans, &mut targets),
+    );
+    each_span(
+        parallel,
+        span,
+        work,
+        &|_, (places, (masses, volumes), (velocities, stresses), data, windows)| {
+            let mut sums = InSpan::new(windows);
+            let amounts = Amounts {
+                masses,
+                volumes,
+                velocities,
+                stresses,
+                data,
+                phase,
+                even,
+            };
+            if const { G > 0 } {
+                p2g(basis, grid, places, amounts, move |dof, sum| sums.add(dof, sum));
+            } else {
+                for_values!(B, basis, |basis| p2g(
+                    basis,
+                    grid,
+                    places,
+                    amounts,
+                    move |dof, sum| sums.add(dof, sum)
+                ));
+            }
+        },
+    );
+    store.add_up(spans, &mut targets);
+}
