@@ -7,6 +7,7 @@ use nalgebra::SVector;
 
 use crate::parallel::many_threads;
 use crate::scalar::Scalar;
+use crate::simd::with_features;
 
 /// A symmetric matrix of order `n` with half band width `w`: entries `(i, j)` with `|i - j| <= w`, the lower
 /// half stored by rows. Factorised in place as `L D L^T`, `O(n w^2)`; solved in `O(n w)`.
@@ -271,6 +272,14 @@ impl<T: Scalar> Banded<T> {
     /// Solves with the factorised matrix for all right-hand sides in `x`. What belongs to an unknown is a row of `stride` numbers, and
     /// so many rows as there are unknowns lie end to end again and again.
     pub(crate) fn solve_lines(&self, x: &mut [T], stride: usize) {
+        with_features(
+            #[inline(always)]
+            move || self.solve_lines_here(x, stride),
+        );
+    }
+
+    #[inline(always)]
+    fn solve_lines_here(&self, x: &mut [T], stride: usize) {
         match (stride, self.half_band) {
             (1, 1) => self.solve_narrow_lines::<2>(x),
             (1, 2) => self.solve_narrow_lines::<3>(x),
@@ -283,6 +292,7 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
+    #[inline(always)]
     fn solve_narrow_lines<const W: usize>(&self, x: &mut [T]) {
         let mut several = x.chunks_exact_mut((narrow::ABREAST * self.order).max(1));
         for lines in several.by_ref() {
@@ -293,6 +303,7 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
+    #[inline(always)]
     fn solve_wide_lines(&self, x: &mut [T], stride: usize) {
         for i in 0..self.order {
             let (before, here) = x.split_at_mut(i * stride);

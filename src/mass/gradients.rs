@@ -6,6 +6,7 @@ use super::{AxisMasses, Lattice, Penalty};
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
 use crate::scalar::Scalar;
+use crate::simd::with_features;
 
 /// Iterations after which the solution is taken as it is. Ten to thirty are usual.
 const MOST_ITERATIONS: usize = 200;
@@ -125,10 +126,14 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
     pub fn solve(&mut self, matrix: &Lattice<T>, penalty: &Penalty<T, D>, right: &mut [SVector<T, D>]) {
         self.iterations = 0;
         for axis in 0..D {
-            self.solve_component(matrix, penalty, right, axis);
+            with_features(
+                #[inline(always)]
+                || self.solve_component(matrix, penalty, right, axis),
+            );
         }
     }
 
+    #[inline(always)]
     fn solve_component(
         &mut self,
         matrix: &Lattice<T>,
@@ -180,6 +185,7 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
     ///
     /// The guess is the lumped solution, and of tied DOFs, whose own mass may be next to nothing, the translation of the whole and
     /// what it leaves over the diagonal.
+    #[inline(always)]
     fn start(
         &mut self,
         matrix: &Lattice<T>,
@@ -220,6 +226,7 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
     }
 
     /// Curvature along the direction that is round-off.
+    #[inline(always)]
     fn negligible_curvature(&self, axis: usize) -> T {
         let direction = &self.direction[axis];
         let largest = self.diagonal.iter().zip(direction);
@@ -234,6 +241,7 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
     }
 
     /// Velocity of the whole, but for what is held.
+    #[inline(always)]
     fn translation(&self, right: &[SVector<T, D>], axis: usize) -> T {
         let (mut momentum, mut mass) = (T::zero(), T::zero());
         for ((right, &sum), &free) in right.iter().zip(&self.sums).zip(&self.free[axis]) {
@@ -248,6 +256,7 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
     }
 
     /// Preconditioned residual, left in `work`; returns its product with the residual.
+    #[inline(always)]
     fn precondition(&mut self, axis: usize) -> T {
         let (residual, work) = (&self.residual[axis], &mut self.work);
         for ((w, &r), &scale) in work.iter_mut().zip(residual).zip(&self.scale) {
@@ -262,6 +271,7 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
     }
 
     /// What, added to all coupled DOFs, makes the sum of the residual vanish.
+    #[inline(always)]
     fn shift(&self, axis: usize) -> T {
         let (mut left, mut mass) = (T::zero(), T::zero());
         for (i, &r) in self.residual[axis].iter().enumerate() {
@@ -275,6 +285,7 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
 }
 
 /// Sum of the products, in eight chains: one would wait for itself.
+#[inline(always)]
 fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
     let (a, a_rest) = a.as_chunks::<8>();
     let (b, b_rest) = b.as_chunks::<8>();

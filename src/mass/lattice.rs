@@ -2,6 +2,7 @@
 
 use crate::parallel::{each_span, many_threads};
 use crate::scalar::Scalar;
+use crate::simd::with_features;
 
 /// Rows whose products are summed side by side: their sums stay in the nearest cache.
 const BLOCK: usize = 128;
@@ -91,13 +92,19 @@ impl<T: Scalar> Lattice<T> {
     pub fn multiply(&self, x: &[T], y: &mut [T]) {
         let parallel = self.entries.len() >= MANY && many_threads();
         each_span(parallel, SPAN, y, &|first, y| {
-            for (k, y) in y.chunks_mut(BLOCK).enumerate() {
-                self.multiply_block(first + k * BLOCK, x, y);
-            }
+            with_features(
+                #[inline(always)]
+                move || {
+                    for (k, y) in y.chunks_mut(BLOCK).enumerate() {
+                        self.multiply_block(first + k * BLOCK, x, y);
+                    }
+                },
+            );
         });
     }
 
     /// The rows from `first` on, as many as `y` has.
+    #[inline(always)]
     fn multiply_block(&self, first: usize, x: &[T], y: &mut [T]) {
         y.fill(T::zero());
         let end = first + y.len();

@@ -9,6 +9,7 @@ use crate::parallel::{CELLS, each_span, many_threads};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Crossed, Reconstruction};
 use crate::scalar::Scalar;
+use crate::simd::with_features;
 use crate::tensor::determinant;
 
 /// Particles that a law is asked for at once.
@@ -98,9 +99,14 @@ where
         let parallel = occupied.len() > CELLS && many_threads();
         each_span(parallel, CELLS, &mut crossed[..], &|first, crossed| {
             let cells = &occupied[first..first + crossed.len()];
-            for (crossed, &cell) in crossed.iter_mut().zip(cells) {
-                *crossed = self.crossed_in(cell as usize, dt);
-            }
+            with_features(
+                #[inline(always)]
+                || {
+                    for (crossed, &cell) in crossed.iter_mut().zip(cells) {
+                        *crossed = self.crossed_in(cell as usize, dt);
+                    }
+                },
+            );
         });
         self.crossed = crossed;
     }

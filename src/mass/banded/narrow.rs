@@ -25,6 +25,7 @@ pub(super) fn solve<T: Scalar, const D: usize, const W: usize>(
 pub(super) const ABREAST: usize = 8;
 
 /// Solves for one number each in [`ABREAST`] lines that lie end to end.
+#[inline(always)]
 pub(super) fn solve_abreast<T: Scalar, const W: usize>(rows: &[T], x: &mut [T]) {
     let (rows, _) = rows.as_chunks::<W>();
     let length = rows.len();
@@ -61,6 +62,7 @@ pub(super) fn solve_abreast<T: Scalar, const W: usize>(rows: &[T], x: &mut [T]) 
 }
 
 /// Solves for one number each.
+#[inline(always)]
 pub(super) fn solve_line<T: Scalar, const W: usize>(rows: &[T], x: &mut [T]) {
     solve_each::<T, _, W>(rows, x, |x| x);
 }
