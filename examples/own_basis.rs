@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::f64::consts::PI;
 
-use materialpoint::basis::{AxisFamily, Row};
+use materialpoint::basis::{AxisBasis, AxisCell, Functions};
 use materialpoint::grid::Grid;
 use materialpoint::law::{LinearElastic, Moduli};
 use materialpoint::mass::VelocityMass;
@@ -13,6 +13,7 @@ use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Taylor;
 use materialpoint::scalar::Scalar;
+use materialpoint::simd::Lanes;
 use materialpoint::stepper::{Forcing, Setup, Stepper};
 use nalgebra::vector;
 
@@ -22,24 +23,20 @@ use nalgebra::vector;
 #[derive(Clone, Copy, Debug)]
 pub struct UniformQuadratic;
 
-impl<T: Scalar> AxisFamily<T, 3> for UniformQuadratic {
+impl<T: Scalar> AxisBasis<T, 3> for UniformQuadratic {
     fn dofs_on_axis(&self, cells: usize) -> usize {
         cells + 2
     }
 
     /// `s` runs from 0 to 1 in the cell.
-    fn row(&self, _cells: usize, cell: usize, s: T) -> Row<T, 3> {
-        let (one, two) = (T::one(), T::lit(2.0));
+    fn evaluate<K: Lanes<T>>(&self, k: K, _at: AxisCell, s: K::V) -> Functions<K::V, 3> {
+        let (one, half) = (k.splat(T::one()), k.splat(T::one() / T::lit(2.0)));
         let r = one - s;
-        Row {
-            dof: [cell, cell + 1, cell + 2],
-            value: [r * r / two, one / two + s * r, s * s / two],
-            slope: [-r, r - s, s],
+        Functions {
+            value: [r * r * half, half + s * r, s * s * half],
+            slope: [s - one, r - s, s],
         }
     }
-
-    // The DOFs of cell `i` are `i, i + 1, i + 2` everywhere: a step may compute with four points at once.
-    const UNIFORM: bool = true;
 }
 
 // In every dimension: the product of the one-axis functions.

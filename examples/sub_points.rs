@@ -9,7 +9,7 @@
 use std::error::Error;
 use std::time::Instant;
 
-use materialpoint::basis::{AxisFamily, BasisFamily, DualDomain, Row};
+use materialpoint::basis::{AxisBasis, AxisCell, BasisFamily, DualDomain, Functions};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
 use materialpoint::mass::VelocityMass;
@@ -18,6 +18,7 @@ use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, SubPoints, Taylor};
 use materialpoint::reference::{self, LagrangianBar, Reference, StaticColumn, Strain};
 use materialpoint::scalar::Scalar;
+use materialpoint::simd::Lanes;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
 use nalgebra::vector;
 
@@ -33,33 +34,51 @@ const STEPS: u32 = 5000;
 #[derive(Clone, Copy, Debug)]
 pub struct Swapped;
 
-impl<T: Scalar> AxisFamily<T, 4> for Swapped {
+impl<T: Scalar> AxisBasis<T, 4> for Swapped {
     fn dofs_on_axis(&self, cells: usize) -> usize {
         cells + 1
     }
 
-    fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, 4> {
-        let (zero, one, two) = (T::zero(), T::one(), T::lit(2.0));
+    /// Of the nodes below, left of, right of and above the cell; at an end of the axis one of them is missing.
+    fn evaluate<K: Lanes<T>>(&self, k: K, at: AxisCell, unit: K::V) -> Functions<K::V, 4> {
+        let (zero, one, half) = (
+            k.splat(T::zero()),
+            k.splat(T::one()),
+            k.splat(T::one() / T::lit(2.0)),
+        );
         let (left, right) = (one - unit, unit);
-        let smooth = two * left * right;
+        let smooth = (left + left) * right;
         let plain = one - smooth;
-        let mut slope = [zero, -plain, plain, zero];
+        let (of_left, of_right) = (smooth * left, smooth * right);
+        let mut slope = [zero, zero - plain, plain, zero];
         // Each node's smoothed slope is the central difference, at an end the one-sided one.
-        let (below, half) = if cell == 0 { (1, one) } else { (0, one / two) };
-        slope[below] -= smooth * left * half;
-        slope[2] += smooth * left * half;
-        let (above, half) = if cell + 1 == cells {
-            (2, one)
-        } else {
-            (3, one / two)
+        let (below, share) = if at.cell == 0 { (1, one) } else { (0, half) };
+        slope[below] = slope[below] - of_left * share;
+        slope[2] = slope[2] + of_left * share;
+        let (above, share) = if at.cell + 1 == at.cells { (2, one) } else { (3, half) };
+        slope[1] = slope[1] - of_right * share;
+        slope[above] = slope[above] + of_right * share;
+        let value = [zero, left, right, zero];
+        let places: [usize; 4] = match at.cell - self.first_of(at) {
+            0 => [1, 2, 3, 0],
+            1 => [0, 1, 2, 3],
+            _ => [3, 0, 1, 2],
         };
-        slope[1] -= smooth * right * half;
-        slope[above] += smooth * right * half;
-        Row {
-            dof: [cell.saturating_sub(1), cell, cell + 1, (cell + 2).min(cells)],
-            value: [zero, left, right, zero],
-            slope,
+        Functions {
+            value: places.map(|place| value[place]),
+            slope: places.map(|place| slope[place]),
         }
+    }
+
+    fn first_dof(&self, at: AxisCell) -> usize {
+        self.first_of(at)
+    }
+}
+
+impl Swapped {
+    /// The first of the four nodes, of which as many as there are lie in the grid.
+    fn first_of(self, at: AxisCell) -> usize {
+        at.cell.saturating_sub(1).min((at.cells + 1).saturating_sub(4))
     }
 }
 

@@ -3,7 +3,8 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use wide::f64x4;
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, f64x4};
 
 /// Numbers in each of the three arrays: 100 MB together, as much as a million particles take.
 const NUMBERS: usize = 4_200_000;
@@ -25,18 +26,25 @@ pub fn bandwidth() -> f64 {
 
 /// Floating-point operations a second of fused multiply-adds on vectors of four, the best of several.
 pub fn peak() -> f64 {
-    const ROUNDS: usize = 2_000_000;
-    let (factor, term) = (black_box(f64x4::splat(0.999)), black_box(f64x4::splat(1e-3)));
-    let mut sums = [f64x4::splat(1.0); SUMS];
-    let seconds = best(|| {
-        for _ in 0..ROUNDS {
-            for sum in &mut sums {
-                *sum = sum.mul_add(factor, term);
-            }
-        }
-        black_box(&mut sums);
-    });
+    let level = Level::new();
+    let seconds = best(|| dispatch!(level, simd => multiply_and_add(simd)));
     (2 * 4 * SUMS * ROUNDS) as f64 / seconds
+}
+
+/// Rounds of as many operations as there are sums.
+const ROUNDS: usize = 2_000_000;
+
+#[inline(always)]
+fn multiply_and_add<S: Simd>(simd: S) {
+    let splat = |value: f64| black_box(f64x4::splat(simd, value));
+    let (factor, term) = (splat(0.999), splat(1e-3));
+    let mut sums = [f64x4::splat(simd, 1.0); SUMS];
+    for _ in 0..ROUNDS {
+        for sum in &mut sums {
+            *sum = sum.mul_add(factor, term);
+        }
+    }
+    black_box(&mut sums);
 }
 
 fn best(mut f: impl FnMut()) -> f64 {

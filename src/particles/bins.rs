@@ -51,6 +51,19 @@ impl<const D: usize> Bins<D> {
         Ok(bins)
     }
 
+    /// Particles in the given cells, without lists.
+    #[cfg(test)]
+    pub(crate) fn of_cells(cells: Vec<Cell<D>>) -> Self {
+        Self {
+            cell_of: cells,
+            start: Vec::new(),
+            order: Vec::new(),
+            occupied: Vec::new(),
+            lists_are_stale: true,
+            are_in_order: false,
+        }
+    }
+
     /// Looks every particle's cell up again and returns how many changed theirs.
     ///
     /// # Errors

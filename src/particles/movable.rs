@@ -54,7 +54,7 @@ impl<T, const D: usize, S, P> AllMaterial<'_, T, D, S, P> {
 
 impl<T, const D: usize, S, P> Movables<'_, T, D, S, P> {
     /// Where they are, in these cells, and how far they have come since the start; and what they are made of.
-    pub(crate) fn split<'b>(
+    pub(crate) fn places_and_material<'b>(
         &'b mut self,
         cells: &'b mut [Cell<D>],
     ) -> (Places<'b, T, D>, AllMaterial<'b, T, D, S, P>) {

@@ -47,7 +47,7 @@ pub(super) fn move_particles<T, const D: usize, B, L, P, const C: usize>(
         work,
         &|first, (mut particles, cells, found, bounds)| {
             let mut flaw = None;
-            let (places, mut material) = particles.split(cells);
+            let (places, mut material) = particles.places_and_material(cells);
             let outcome = drift(basis, grid, motion, places, &mut |p, increments| {
                 let some = material.some(p, increments[0].len());
                 flaw = deform(matter, motion.dt, increments, some).map(|(k, flaw)| (p + k, flaw));

@@ -69,7 +69,8 @@ fn bends_in<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::basis::{AxisFamily, BSpline, DualDomain, Linear, Row};
+    use crate::basis::{AxisBasis, AxisCell, BSpline, DualDomain, Functions, Linear};
+    use crate::simd::Lanes;
     use nalgebra::vector;
 
     /// Linear functions averaged over a particle of this half size, in cells (uGIMP): they bend so far from the edges of cells, with a
@@ -77,12 +78,20 @@ mod tests {
     #[derive(Clone, Copy, Debug)]
     struct Averaged(f64);
 
-    impl<T: Scalar> AxisFamily<T, 4> for Averaged {
+    impl<T: Scalar> AxisBasis<T, 4> for Averaged {
         fn dofs_on_axis(&self, cells: usize) -> usize {
             cells + 3
         }
 
-        fn row(&self, _cells: usize, cell: usize, s: T) -> Row<T, 4> {
+        fn evaluate<K: Lanes<T>>(&self, k: K, _at: AxisCell, s: K::V) -> Functions<K::V, 4> {
+            let [value, slope] = k.one_by_one(s, |s| self.row(s));
+            Functions { value, slope }
+        }
+    }
+
+    impl Averaged {
+        /// Values and, which nobody asks for here, no slopes.
+        fn row<T: Scalar>(&self, s: T) -> [[T; 4]; 2] {
             let [half, one, two, four] = [self.0, 1.0, 2.0, 4.0].map(T::lit);
             let value = |node: usize| {
                 let away = (s + one - T::count(node)).abs();
@@ -93,11 +102,7 @@ mod tests {
                     _ => T::zero(),
                 }
             };
-            Row {
-                dof: std::array::from_fn(|k| cell + k),
-                value: std::array::from_fn(value),
-                slope: [T::zero(); 4],
-            }
+            [std::array::from_fn(value), [T::zero(); 4]]
         }
     }
 

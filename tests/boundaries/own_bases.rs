@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use materialpoint::basis::{AxisFamily, BSpline, BasisFamily, Row, tensor};
+use materialpoint::basis::{AxisBasis, AxisCell, BSpline, BasisFamily, Functions, tensor};
 use materialpoint::error::StepError;
 use materialpoint::grid::{Cell, Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
@@ -12,6 +12,7 @@ use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
 use materialpoint::scalar::Scalar;
+use materialpoint::simd::Lanes;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
 use nalgebra::SVector;
 
@@ -19,22 +20,19 @@ use nalgebra::SVector;
 #[derive(Clone, Copy, Debug)]
 struct Uniform;
 
-impl<T: Scalar> AxisFamily<T, 3> for Uniform {
+impl<T: Scalar> AxisBasis<T, 3> for Uniform {
     fn dofs_on_axis(&self, cells: usize) -> usize {
         cells + 2
     }
 
-    fn row(&self, _cells: usize, cell: usize, s: T) -> Row<T, 3> {
-        let (one, two) = (T::one(), T::lit(2.0));
+    fn evaluate<K: Lanes<T>>(&self, k: K, _at: AxisCell, s: K::V) -> Functions<K::V, 3> {
+        let (one, half) = (k.splat(T::one()), k.splat(T::one() / T::lit(2.0)));
         let r = one - s;
-        Row {
-            dof: [cell, cell + 1, cell + 2],
-            value: [r * r / two, one / two + s * r, s * s / two],
-            slope: [-r, r - s, s],
+        Functions {
+            value: [r * r * half, half + s * r, s * s * half],
+            slope: [s - one, r - s, s],
         }
     }
-
-    const UNIFORM: bool = true;
 }
 
 materialpoint::tensor_product_family!(Uniform, width = 3, degree = 2);
@@ -69,16 +67,14 @@ impl<const ABOUT: bool> BasisFamily<f64, 1> for ByHand<ABOUT> {
 #[derive(Clone, Copy, Debug)]
 struct Wide;
 
-impl<T: Scalar> AxisFamily<T, 4> for Wide {
+impl<T: Scalar> AxisBasis<T, 4> for Wide {
     fn dofs_on_axis(&self, cells: usize) -> usize {
-        AxisFamily::<T, 4>::dofs_on_axis(&BSpline::<3>, cells)
+        AxisBasis::<T, 4>::dofs_on_axis(&BSpline::<3>, cells)
     }
 
-    fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, 4> {
-        BSpline::<3>.row(cells, cell, unit)
+    fn evaluate<K: Lanes<T>>(&self, k: K, at: AxisCell, unit: K::V) -> Functions<K::V, 4> {
+        BSpline::<3>.evaluate(k, at, unit)
     }
-
-    const UNIFORM: bool = true;
 }
 
 materialpoint::tensor_product_family!(Wide, width = 4, degree = 2);

@@ -27,13 +27,18 @@ impl<const D: usize, B: BasisFamily<f64, D>> BasisFamily<f64, D> for Everywhere<
         self.0.take_in(grid, bins);
     }
 
-    fn factors<V: materialpoint::lanes::SideBySide<f64>>(
+    fn factors<K: materialpoint::simd::Lanes<f64>>(
         &self,
+        k: K,
         grid: &Grid<f64, D>,
         cell: &Cell<D>,
-        unit: &[V; D],
-    ) -> materialpoint::basis::Factors<V, D> {
-        self.0.factors(grid, cell, unit)
+        unit: &[K::V; D],
+    ) -> materialpoint::basis::Factors<K::V, D> {
+        self.0.factors(k, grid, cell, unit)
+    }
+
+    fn first_dofs(&self, grid: &Grid<f64, D>, cell: &Cell<D>) -> [usize; D] {
+        self.0.first_dofs(grid, cell)
     }
 
     fn degree(&self) -> usize {

@@ -1,14 +1,13 @@
 //! Densities that stay positive.
 
 use nalgebra::vector;
-use wide::f64x4;
 
 use super::*;
 use crate::field::MassMomentum;
 use crate::grid::Grid;
-use crate::lanes::LANES;
 use crate::particles::Bins;
 use crate::reconstruction::Densities;
+use crate::simd::{Four, LANES, Plain};
 
 /// Four cells at once leave one whose density might be negative to the way that draws it towards its mean, where it is a mass.
 #[test]
@@ -33,10 +32,10 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
         mass: 2.0,
         momentum: vector![1.0, 0.0],
     };
-    let four = taylor.integrate_four::<f64x4, MassMomentum<f64, 2>>(&cloud, 0..2, true, &density, |_, _| ());
+    let four = taylor.integrate_four::<Plain, MassMomentum<f64, 2>>(Plain, &cloud, 0..2, true, &density, |_, _| ());
     assert_eq!(four.hard, [false, true, false, false]);
     let momentum = |p: usize| density(p).momentum;
-    let any = taylor.integrate_four::<f64x4, SVector<f64, 2>>(&cloud, 0..2, true, &momentum, |_, _| ());
+    let any = taylor.integrate_four::<Plain, SVector<f64, 2>>(Plain, &cloud, 0..2, true, &momentum, |_, _| ());
     assert_eq!(any.hard, [false; LANES]);
     let (mut least, mut sum) = (f64::INFINITY, 0.0);
     let add = |_: &Point<f64, 2>, weighted: MassMomentum<f64, 2>| {
@@ -79,10 +78,10 @@ fn the_order_of_particles_does_not_matter() {
         let taylor = Taylor::<f64, 1, 3>::new();
         let mut found = Vec::new();
         for cells in [0..4, 4..7] {
-            let add = |_: usize, value: &[f64x4; MOST_COMPONENTS]| {
-                found.extend(value[..2].iter().flat_map(|q| q.to_array()));
+            let add = |_: usize, value: &[Four<f64>; MOST_COMPONENTS]| {
+                found.extend(value[..2].iter().flat_map(|q| q.0));
             };
-            let four = taylor.integrate_four::<f64x4, _>(&cloud, cells, conserve, &density, add);
+            let four = taylor.integrate_four::<Plain, _>(Plain, &cloud, cells, conserve, &density, add);
             assert_eq!(four.hard, [false; LANES]);
         }
         found
@@ -109,13 +108,13 @@ fn a_field_of_many_components_is_streamed_along_one_axis_too() {
     let (mut single, mut all) = (Vec::new(), Vec::new());
     for c in 0..3 {
         let one = |p: usize| component(p, c);
-        taylor.integrate_four::<f64x4, f64>(&cloud, 0..4, false, &one, |point, value| {
-            single.push((point, c, value[0].to_array()));
+        taylor.integrate_four::<Plain, f64>(Plain, &cloud, 0..4, false, &one, |point, value| {
+            single.push((point, c, value[0].0));
         });
     }
     let three = |p: usize| SVector::<f64, 3>::from_fn(|c, _| component(p, c));
-    taylor.integrate_four::<f64x4, SVector<f64, 3>>(&cloud, 0..4, false, &three, |point, value| {
-        all.extend((0..3).map(|c| (point, c, value[c].to_array())));
+    taylor.integrate_four::<Plain, SVector<f64, 3>>(Plain, &cloud, 0..4, false, &three, |point, value| {
+        all.extend((0..3).map(|c| (point, c, value[c].0)));
     });
     all.sort_by_key(|&(point, c, _)| (c, point));
     assert_eq!(single, all);

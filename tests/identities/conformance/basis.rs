@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 
-use materialpoint::basis::{AxisFamily, BSpline, BasisFamily, DualDomain, FixedPoints, Linear, Row, tensor};
+use materialpoint::basis::{
+    AxisBasis, AxisCell, BSpline, BasisFamily, DualDomain, FixedPoints, Functions, Linear, tensor,
+};
 use materialpoint::grid::{Cell, Face, Grid};
-use materialpoint::lanes::SideBySide;
 use materialpoint::scalar::Scalar;
+use materialpoint::simd::{Lanes, One};
 use materialpoint::testing::{BasisClaims, Expected, Failure, Property, check_basis};
 use nalgebra::{SVector, vector};
 
@@ -133,13 +135,36 @@ enum Mistake {
 #[derive(Clone, Copy, Debug)]
 struct Faulty(Mistake);
 
-impl AxisFamily<f64, 4> for Faulty {
+/// The functions of one cell, with their DOFs.
+struct Row {
+    dof: [usize; 4],
+    value: [f64; 4],
+    slope: [f64; 4],
+}
+
+impl Faulty {
     fn dofs_on_axis(&self, cells: usize) -> usize {
         cells + 1 + usize::from(self.0 == Mistake::Unreached)
     }
 
-    fn row(&self, cells: usize, cell: usize, unit: f64) -> Row<f64, 4> {
-        let mut row = DualDomain::new().row(cells, cell, unit);
+    /// Dual domain of the four nodes about a cell, at an end with a node named twice, and with the mistake.
+    fn row(&self, cells: usize, cell: usize, unit: f64) -> Row {
+        let mut row = Row {
+            dof: [cell.saturating_sub(1), cell, cell + 1, (cell + 2).min(cells)],
+            value: [0.0; 4],
+            slope: [0.0; 4],
+        };
+        let (basis, at) = (DualDomain::new(), AxisCell { cells, cell });
+        let first = AxisBasis::<f64, 4>::first_dof(&basis, at);
+        let functions = basis.evaluate(One, at, unit);
+        for k in 0..4 {
+            // Nodes that the functions of the cell begin before it at an end have no part in it.
+            let place = (first + k + 1).wrapping_sub(cell);
+            if place < 4 {
+                row.value[place] = functions.value[k];
+                row.slope[place] = functions.slope[k];
+            }
+        }
         let smooth = (1.0 - 2.0 * unit * (1.0 - unit)) * (1.0 - unit);
         match self.0 {
             Mistake::CentralAtEnds if cell == 0 => {
@@ -182,7 +207,7 @@ impl BasisFamily<f64, 1> for Faulty {
     }
 
     fn dofs(&self, grid: &Grid<f64, 1>) -> [usize; 1] {
-        tensor::dofs::<f64, 1, 4, _>(self, grid)
+        [self.dofs_on_axis(grid.cells()[0])]
     }
 
     fn for_each(
@@ -190,9 +215,14 @@ impl BasisFamily<f64, 1> for Faulty {
         grid: &Grid<f64, 1>,
         cell: &Cell<1>,
         x: &SVector<f64, 1>,
-        f: impl FnMut(usize, f64, SVector<f64, 1>),
+        mut f: impl FnMut(usize, f64, SVector<f64, 1>),
     ) {
-        tensor::for_each::<f64, 1, 4, _>(self, grid, cell, x, f);
+        let unit = grid.unit_coordinate(0, cell[0], x[0]);
+        let row = self.row(grid.cells()[0], cell[0] as usize, unit);
+        for k in 0..4 {
+            let slope = row.slope[k] * grid.inverse_cell_size()[0];
+            f(row.dof[k], row.value[k], SVector::from([slope]));
+        }
     }
 
     fn for_each_at_fixed_point(
@@ -266,7 +296,7 @@ fn a_failure_says_what_where_and_by_how_much() {
 
 /// What the fast ways of a uniform family can get wrong, in ways that the slow ones do not see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Lanes {
+enum Mistaken {
     Right,
     /// The slopes have the other sign.
     Slope,
@@ -278,33 +308,30 @@ enum Lanes {
 
 /// Hats with lanes of their own.
 #[derive(Clone, Copy, Debug)]
-struct Fast(Lanes);
+struct Fast(Mistaken);
 
-impl<T: Scalar> AxisFamily<T, 2> for Fast {
+impl<T: Scalar> AxisBasis<T, 2> for Fast {
     fn dofs_on_axis(&self, cells: usize) -> usize {
         cells + 1
     }
 
-    fn row(&self, cells: usize, cell: usize, unit: T) -> Row<T, 2> {
-        Linear.row(cells, cell, unit)
-    }
-
-    const UNIFORM: bool = true;
-
-    fn lanes<V: SideBySide<T>>(&self, _cells: usize, _cell: usize, unit: V) -> ([V; 2], [V; 2]) {
-        let (zero, one) = (V::splat(T::zero()), V::splat(T::one()));
-        let (value, slope) = ([one - unit, unit], [zero - one, one]);
-        match self.0 {
-            Lanes::Right => (value, slope),
-            Lanes::Slope => (value, [one, zero - one]),
-            Lanes::Value => ([unit, one - unit], slope),
-            Lanes::Neighbour => {
-                let mut first = None;
-                let same = |x| [[*first.get_or_insert(x)], [x]];
-                let [[unit], _] = unit.one_by_one(same);
-                ([one - unit, unit], slope)
+    /// Right at the first of the points; a single one is.
+    fn evaluate<K: Lanes<T>>(&self, k: K, _at: AxisCell, unit: K::V) -> Functions<K::V, 2> {
+        let (one, mut first) = (T::one(), None);
+        let [value, slope] = k.one_by_one(unit, |unit| {
+            let (value, slope) = ([one - unit, unit], [-one, one]);
+            let Some(first) = first else {
+                first = Some(unit);
+                return [value, slope];
+            };
+            match self.0 {
+                Mistaken::Right => [value, slope],
+                Mistaken::Slope => [value, [one, -one]],
+                Mistaken::Value => [[unit, one - unit], slope],
+                Mistaken::Neighbour => [[one - first, first], slope],
             }
-        }
+        });
+        Functions { value, slope }
     }
 }
 
@@ -313,10 +340,10 @@ materialpoint::tensor_product_family!(Fast, width = 2, degree = 1);
 #[test]
 fn lanes_that_say_something_else_than_rows_are_found() {
     for (lanes, expected) in [
-        (Lanes::Right, None),
-        (Lanes::Slope, Some(Property::Factors)),
-        (Lanes::Value, Some(Property::Factors)),
-        (Lanes::Neighbour, Some(Property::Factors)),
+        (Mistaken::Right, None),
+        (Mistaken::Slope, Some(Property::Factors)),
+        (Mistaken::Value, Some(Property::Factors)),
+        (Mistaken::Neighbour, Some(Property::Factors)),
     ] {
         let claims = BasisClaims::of_degree(1);
         assert_eq!(verdict(&Fast(lanes), &claims), expected, "{lanes:?}");

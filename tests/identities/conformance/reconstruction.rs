@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use materialpoint::field::Field;
 use materialpoint::grid::Grid;
-use materialpoint::lanes::Lanes;
 use materialpoint::reconstruction::{
     Cloud, CubicSpline, Four, Point, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor, Values,
 };
 use materialpoint::scalar::Scalar;
+use materialpoint::simd::Packs;
 use materialpoint::taylor::MOST_COMPONENTS;
 use materialpoint::testing::{Failure, Measure, Property, ReconstructionClaims, check_reconstruction};
 use nalgebra::{SVector, vector};
@@ -405,23 +405,24 @@ impl Reconstruction<f64, 1> for Doors {
         self.0.line()
     }
 
-    fn integrate_four<V: Lanes<f64>, Q: Field<f64>>(
+    fn integrate_four<K: Packs<f64>, Q: Field<f64>>(
         &self,
+        k: K,
         cloud: &Cloud<'_, f64, 1>,
         cells: Range<usize>,
         conserve: bool,
         value: &impl Values<f64, Q>,
-        mut sink: impl FnMut(usize, &[V; MOST_COMPONENTS]),
+        mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {
         let mut four = self
             .0
-            .integrate_four::<V, Q>(cloud, cells, conserve, value, |number, values| {
+            .integrate_four::<K, Q>(k, cloud, cells, conserve, value, |number, values| {
                 let mut values = *values;
-                let [a, b, c, d] = values[0].array();
+                let [a, b, c, d] = k.array(values[0]);
                 match self.1 {
-                    Door::Four => values[0] = V::splat(0.0) - values[0],
-                    Door::Lane => values[0] = V::new([b, b, c, d]),
-                    _ => values[0] = V::new([a, b, c, d]),
+                    Door::Four => values[0] = k.splat(0.0) - values[0],
+                    Door::Lane => values[0] = k.new([b, b, c, d]),
+                    _ => values[0] = k.new([a, b, c, d]),
                 }
                 sink(number, &values);
             });
