@@ -306,8 +306,8 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         _cloud: &Cloud<'_, T, D>,
         _cell: usize,
         _conserve: bool,
-        _value: &impl Fn(usize) -> Q,
-        _sink: impl FnMut(&Point<T, D>, Q),
+        _value: &dyn Fn(usize) -> Q,
+        _sink: &mut dyn FnMut(&Point<T, D>, Q),
     ) -> bool {
         const { assert!(!Self::BY_FOUR, "BY_FOUR wants an own `integrate_hard`") };
         true

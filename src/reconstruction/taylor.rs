@@ -555,8 +555,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         cloud: &Cloud<'_, T, D>,
         cell: usize,
         conserve: bool,
-        value: &impl Fn(usize) -> Q,
-        mut sink: impl FnMut(&Point<T, D>, Q),
+        value: &dyn Fn(usize) -> Q,
+        sink: &mut dyn FnMut(&Point<T, D>, Q),
     ) -> bool {
         let fits = CellFits::new(cloud, cell, self.tolerance);
         let (coefficients, full) = if conserve {
@@ -564,9 +564,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
             let coefficients = conserved(&fits, cloud, cell, &amount);
             (self.rule.keep_positive(coefficients).0, fits.conserved_is_full())
         } else {
-            (free(&fits, cloud, cell, value), fits.free_is_full())
+            (free(&fits, cloud, cell, &value), fits.free_is_full())
         };
-        self.rule.emit(&fits.patch, &coefficients, &mut sink);
+        self.rule.emit(&fits.patch, &coefficients, &mut |point, value| sink(point, value));
         full
     }
 

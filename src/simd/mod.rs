@@ -18,7 +18,9 @@ pub(crate) mod vector;
 
 pub use one::One;
 pub use plain::{Four, Plain};
-pub(crate) use vector::{dispatch, dispatch_for, dispatch_with, is, with_features};
+pub(crate) use vector::{
+    dispatch, dispatch_for, dispatch_vectors, dispatch_with, is, packs_serve, with_features,
+};
 
 use std::ops::{Add, Div, Mul, Sub};
 

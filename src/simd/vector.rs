@@ -242,6 +242,25 @@ pub(crate) fn processor() -> Option<Best> {
     None
 }
 
+/// Whether a scalar has no vectors on any processor, as its size and alignment tell a compiler. One that is laid out as `f64` or
+/// `f32` and is neither goes the way of those without vectors.
+pub(crate) const fn only_plain<T>() -> bool {
+    !matches!((size_of::<T>(), align_of::<T>()), (8, 8) | (4, 4))
+}
+
+/// Whether there are packs worth computing a scalar with, on this machine.
+#[inline(always)]
+pub(crate) fn packs_serve<T: Scalar>() -> bool {
+    only_plain::<T>() || (is::<T, f64>() || is::<T, f32>()) && processor().is_some()
+}
+
+/// Vectors were asked for where there are none: a mistake of ours, never of input.
+#[cold]
+#[inline(never)]
+pub(crate) fn no_packs() -> ! {
+    panic!("no packs serve this scalar here")
+}
+
 /// Calls `f` in a function of its own with the instruction set that packs have: a loop there is made of vectors if
 /// a compiler finds that it can be.
 #[inline(always)]
@@ -258,23 +277,43 @@ pub(crate) fn with_features<R>(f: impl FnOnce() -> R) -> R {
 /// packs that are not wanted.
 macro_rules! dispatch {
     ($scalar:ty, |$token:ident| $body:expr) => {
-        $crate::simd::dispatch_with!($scalar, $token, $body, Singles)
+        $crate::simd::dispatch_with!($scalar, $token, $body, Singles, true)
     };
 }
 
-/// The same with as many to a pack as suit particles of the given cells: eight `f32` where most come in eights.
+/// The same for what there is another way for: only asked where [`packs_serve`] the scalar, so that none are made of `f64` and
+/// `f32` on processors without vectors.
+macro_rules! dispatch_vectors {
+    ($scalar:ty, |$token:ident| $body:expr) => {
+        $crate::simd::dispatch_with!(
+            $scalar,
+            $token,
+            $body,
+            Singles,
+            $crate::simd::vector::only_plain::<$scalar>()
+        )
+    };
+}
+
+/// The latter with as many to a pack as suit particles of the given cells: eight `f32` where most come in eights.
 macro_rules! dispatch_for {
     ($scalar:ty, $eights:expr, |$token:ident| $body:expr) => {
         if const { size_of::<$scalar>() == 4 } && $eights {
-            $crate::simd::dispatch_with!($scalar, $token, $body, ManySingles)
+            $crate::simd::dispatch_with!(
+                $scalar,
+                $token,
+                $body,
+                ManySingles,
+                $crate::simd::vector::only_plain::<$scalar>()
+            )
         } else {
-            $crate::simd::dispatch_with!($scalar, $token, $body, Singles)
+            $crate::simd::dispatch_vectors!($scalar, |$token| $body)
         }
     };
 }
 
 macro_rules! dispatch_with {
-    ($scalar:ty, $token:ident, $body:expr, $singles:ident) => {{
+    ($scalar:ty, $token:ident, $body:expr, $singles:ident, $plain:expr) => {{
         use $crate::simd::vector;
         if const { size_of::<$scalar>() == 8 }
             && vector::is::<$scalar, f64>()
@@ -296,14 +335,16 @@ macro_rules! dispatch_with {
                 #[inline(always)]
                 move || $body,
             )
-        } else {
+        } else if const { $plain } {
             let $token = $crate::simd::Plain;
             $crate::simd::Lanes::<$scalar>::run(
                 $token,
                 #[inline(always)]
                 move || $body,
             )
+        } else {
+            vector::no_packs()
         }
     }};
 }
-pub(crate) use {dispatch, dispatch_for, dispatch_with};
+pub(crate) use {dispatch, dispatch_for, dispatch_vectors, dispatch_with};

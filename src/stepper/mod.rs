@@ -64,6 +64,7 @@ use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Crossed, Cut, Reconstruction};
 use crate::scalar::Scalar;
+use crate::simd::packs_serve;
 use crate::transfer;
 use dofs::Dofs;
 use order::Order;
@@ -401,7 +402,7 @@ where
     /// Whether fits are made and integrated for four cells at a time, so that nothing of them need be kept.
     fn by_four(&self) -> bool {
         let can = const { transfer::fit::<T, D, B, R>() };
-        can && (1..=transfer::MOST_POINTS).contains(&self.reconstruction.line().count())
+        can && packs_serve::<T>() && (1..=transfer::MOST_POINTS).contains(&self.reconstruction.line().count())
     }
 
     /// Puts the particles in the order of their cells.

@@ -15,7 +15,7 @@ use crate::field::{Field, MassMomentum, Pair};
 use crate::grid::Cell;
 use crate::reconstruction::{Cloud, Point, Reconstruction, Values, four_cells};
 use crate::scalar::Scalar;
-use crate::simd::{LANES, Number, Packs, dispatch, each, inlined, in_lanes};
+use crate::simd::{LANES, Number, Packs, dispatch_vectors, each, inlined, in_lanes};
 use crate::taylor::MOST_COMPONENTS;
 
 /// Most points along an axis.
@@ -172,7 +172,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         matrix: &mut impl FnMut(usize, usize, usize, T),
     ) -> usize {
         let (sweep, value) = (*self, *value);
-        dispatch!(T, |k| sweep
+        dispatch_vectors!(T, |k| sweep
             .integrate_in::<_, M, R, I, S, C, G, W>(k, fits, &value, sink, matrix))
     }
 
@@ -281,7 +281,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         let (basis, grid, occupied) = (self.basis, self.grid, fits.cloud.bins.occupied());
         let mut reduced = 0;
         for (place, _) in places.zip(hard).filter(|&(_, &hard)| hard) {
-            let add = |point: &Point<T, D>, value| {
+            let mut add = |point: &Point<T, D>, value| {
                 let value = components_of::<T, I::Field>(&value);
                 let parts = I::parts(&value, &[T::one(); D]);
                 let (cell, x) = (&point.cell, &point.position);
@@ -306,7 +306,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
             let cell = occupied[place] as usize;
             let full = fits
                 .reconstruction
-                .integrate_hard(fits.cloud, cell, I::CONSERVED, &|p| value.at(p), add);
+                .integrate_hard(fits.cloud, cell, I::CONSERVED, &|p| value.at(p), &mut add);
             reduced += usize::from(!full);
         }
         reduced

@@ -43,7 +43,7 @@ use crate::basis::{BasisFamily, Factors, FixedPoints};
 use crate::grid::{Cell, Grid};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::simd::{Lanes, each};
+use crate::simd::{Lanes, each, packs_serve};
 
 /// Whether a basis is a product, so that several points of a cell can be computed at once.
 pub(crate) const fn in_packs<T: Scalar, const D: usize, B: BasisFamily<T, D>>() -> bool {
@@ -100,7 +100,7 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'a, T, D, B> {
     /// Whether several points of a cell are computed at once.
     #[inline(always)]
     fn is_in_packs(&self) -> bool {
-        self.is_wide_enough && const { in_packs::<T, D, B>() }
+        self.is_wide_enough && const { in_packs::<T, D, B>() } && packs_serve::<T>()
     }
 
     /// Coordinates in `cell`, from 0 to 1.

@@ -256,11 +256,11 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         cloud: &Cloud<'_, T, D>,
         cell: usize,
         _conserve: bool,
-        value: &impl Fn(usize) -> Q,
-        mut sink: impl FnMut(&Point<T, D>, Q),
+        value: &dyn Fn(usize) -> Q,
+        sink: &mut dyn FnMut(&Point<T, D>, Q),
     ) -> bool {
         if let Some(place) = cloud.bins.place_of(cell, 0) {
-            self.integrate_apart(cloud, place, value, &mut sink);
+            self.integrate_apart(cloud, place, value, sink);
         }
         true
     }

@@ -118,9 +118,10 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         &self,
         cloud: &Cloud<'_, T, D>,
         place: usize,
-        value: &impl Fn(usize) -> Q,
-        sink: &mut impl FnMut(&Point<T, D>, Q),
+        value: &dyn Fn(usize) -> Q,
+        mut sink: &mut dyn FnMut(&Point<T, D>, Q),
     ) {
+        let (value, sink) = (&value, &mut sink);
         let cell = cloud.bins.occupied()[place] as usize;
         if self.cells[place].kind == Kind::Open {
             return emit_particles(cloud, cell, value, sink);

@@ -38,12 +38,12 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
     let any = taylor.integrate_four::<Plain, SVector<f64, 2>>(Plain, &cloud, 0..2, true, &momentum, |_, _| ());
     assert_eq!(any.hard, [false; LANES]);
     let (mut least, mut sum) = (f64::INFINITY, 0.0);
-    let add = |_: &Point<f64, 2>, weighted: MassMomentum<f64, 2>| {
+    let mut add = |_: &Point<f64, 2>, weighted: MassMomentum<f64, 2>| {
         least = weighted.mass.min(least);
         sum += weighted.mass;
     };
     // Particles at one end do not determine all functions.
-    assert!(!taylor.integrate_hard(&cloud, 1, true, &density, add));
+    assert!(!taylor.integrate_hard(&cloud, 1, true, &density, &mut add));
     // A hundredth of the mean at one of four points that weigh the same.
     assert!(
         (least - 0.6 / 400.0).abs() < 1e-15 && (sum - 0.6).abs() < 1e-15,

@@ -96,7 +96,7 @@ fn by_four<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
         for (lane, place) in places.enumerate() {
             let number = occupied[place] as usize;
             if outcome.hard[lane] {
-                reconstruction.integrate_hard(cloud, number, conserve, value, keep(&mut points));
+                reconstruction.integrate_hard(cloud, number, conserve, value, &mut keep(&mut points));
                 continue;
             }
             let cell = cloud.grid.cell(number);

@@ -437,8 +437,8 @@ impl Reconstruction<f64, 1> for Doors {
         cloud: &Cloud<'_, f64, 1>,
         cell: usize,
         conserve: bool,
-        value: &impl Fn(usize) -> Q,
-        sink: impl FnMut(&Point<f64, 1>, Q),
+        value: &dyn Fn(usize) -> Q,
+        sink: &mut dyn FnMut(&Point<f64, 1>, Q),
     ) -> bool {
         let factor = if self.1 == Door::Hard { 1.0 + 1e-9 } else { 1.0 };
         self.0
