@@ -2,6 +2,8 @@
 
 #[path = "../../examples/fit_field.rs"]
 mod fit_field;
+#[path = "../../examples/linear_taylor.rs"]
+mod linear_taylor;
 // Its runs serve `hard_cases` too, and so does the bar of `stability_map`.
 #[path = "../../examples/long_runs.rs"]
 pub mod long_runs;
@@ -15,6 +17,8 @@ mod speed_and_error;
 pub mod stability_map;
 #[path = "../../examples/sub_points.rs"]
 mod sub_points;
+#[path = "../../examples/thermo_elastic.rs"]
+mod thermo_elastic;
 #[path = "../../examples/vibrating_bar.rs"]
 mod vibrating_bar;
 #[path = "../../examples/virtual_points.rs"]
@@ -120,6 +124,298 @@ fn the_own_basis_conforms() {
         &BasisClaims::of_degree(2),
     )
     .unwrap();
+}
+
+/// The reconstruction of the example keeps its claims, also where each cell has a single particle, or several
+/// almost in one place: there it is the mean and no line.
+#[test]
+fn linear_taylor_conforms() {
+    use materialpoint::grid::Grid;
+    use materialpoint::scalar::Scalar;
+    use materialpoint::testing::{Failure, Measure, ReconstructionClaims, check_reconstruction};
+    use nalgebra::vector;
+    fn check<T: Scalar>(units: &[f64], degree: usize) -> Result<(), Failure> {
+        let grid = Grid::new(vector![T::lit(-0.4)], vector![T::lit(2.1)], [4]).unwrap();
+        let (mut positions, mut volumes) = (Vec::new(), Vec::new());
+        let shares = units.len() * (units.len() + 1) / 2;
+        for cell in 0..4 {
+            for (i, &unit) in units.iter().enumerate() {
+                positions.push(vector![grid.edge(0, cell) + T::lit(unit) * grid.cell_size()[0]]);
+                volumes.push(grid.cell_volume() * T::count(i + 1) / T::count(shares));
+            }
+        }
+        let claims = ReconstructionClaims {
+            conserves_amounts: true,
+            measure: Measure::OccupiedCells,
+            reproduces: degree,
+            integrates: Some(degree),
+        };
+        let mut fit = linear_taylor::LinearTaylor::<T>::new();
+        check_reconstruction(&mut fit, &grid, &positions, &volumes, &claims)
+    }
+    for (units, degree) in [
+        (&[0.06, 0.37, 0.58, 0.97][..], 1),
+        (&[0.2, 0.9], 1),
+        (&[0.3], 0),
+        (&[0.3, 0.305], 0),
+    ] {
+        check::<f64>(units, degree).unwrap();
+        check::<f32>(units, degree).unwrap();
+    }
+}
+
+/// With `k = pi/L` the period is too long by (k h)^2/4 with Shepard and by (k h)^2/8 with either Taylor, as
+/// derived at `run`; the walls add some h^3, so that refinement brings both nearer to that.
+#[test]
+fn linear_taylor_swings_as_theory_says() {
+    let mut nearness = 0.08;
+    for cells in [20, 40] {
+        let squared = (std::f64::consts::PI / f64::from(cells)).powi(2);
+        let [shepard, linear, full] = linear_taylor::run(cells as usize).unwrap();
+        for (outcome, theory) in [(shepard, squared / 4.0), (linear, squared / 8.0)] {
+            assert!((outcome.period / theory - 1.0).abs() < nearness, "{outcome:?}");
+        }
+        nearness /= 2.0;
+        // Strains of 2e-5 move particles off their lattice by as much, and each of the two parts that the
+        // third function may then have is of that size.
+        assert!((linear.period - full.period).abs() < 1e-9, "{linear:?} {full:?}");
+        // At large strain the third function neither helps nor harms, and plain MPM suffers from its walls
+        // and crossings.
+        assert!(linear.stress < shepard.stress / 1.8, "{linear:?} {shepard:?}");
+        assert!(
+            (linear.stress / full.stress - 1.0).abs() < 0.03,
+            "{linear:?} {full:?}"
+        );
+        for outcome in [shepard, linear, full] {
+            assert!(outcome.crossings > 100, "{outcome:?}");
+            assert!(outcome.mass < 4e-15 && outcome.momentum < 4e-15, "{outcome:?}");
+        }
+    }
+}
+
+/// What theory says of the swings of `thermo_elastic` on a grid.
+///
+/// With linear functions the grid's own frequencies are known in closed form. Its stiffness along an axis has
+/// the symbol K = 2 (1 - cos kh)/(kh)^2, its gradient G = sin kh/(kh), its mass M = 1 - 2 r (1 - cos kh),
+/// each over the exact one. Here r is 1/6 with exact integrals, as two Gauss points of a fit give, and 1/6 +
+/// 1/(12 n^2) with sums over n particles a cell. Acceleration divides by the lumped mass; velocity by the
+/// consistent one with Taylor, and by the lumped one again with Shepard, which multiplies the square of the
+/// frequency by one M for each axis. Walls held along their normal mirror the waves: they change nothing.
+struct Thermal {
+    squared: f64,
+    stiffness: f64,
+    gradient: f64,
+    mass: f64,
+    /// M if velocities divide by the lumped mass, and 1.
+    lumped: f64,
+}
+
+impl Thermal {
+    fn new(cells: usize, particles: bool) -> Self {
+        let kh = std::f64::consts::PI / cells as f64;
+        let per_cell = thermo_elastic::PER_CELL as f64;
+        let quadrature = if particles {
+            1.0 / (12.0 * per_cell * per_cell)
+        } else {
+            0.0
+        };
+        let mass = 1.0 - 2.0 * (1.0 / 6.0 + quadrature) * (1.0 - kh.cos());
+        Self {
+            squared: kh * kh,
+            stiffness: 2.0 * (1.0 - kh.cos()) / (kh * kh),
+            gradient: kh.sin() / kh,
+            mass,
+            lumped: if particles { mass } else { 1.0 },
+        }
+    }
+
+    /// `rho (omega/k)^2` (Pa) of the bar with this modulus.
+    fn bar(&self, modulus: f64) -> f64 {
+        modulus * self.stiffness * self.lumped
+    }
+
+    /// The same of the plate with Lame's constants: twice that of its waves.
+    fn plate(&self, lambda: f64, mu: f64, mode: thermo_elastic::Mode) -> f64 {
+        let straight = (lambda + 3.0 * mu) * self.stiffness * self.mass;
+        let across = (lambda + mu) * self.gradient * self.gradient;
+        let sum = match mode {
+            thermo_elastic::Mode::Pressure => straight + across,
+            thermo_elastic::Mode::Shear => straight - across,
+        };
+        sum * self.lumped * self.lumped
+    }
+
+    /// Period (s) that Euler-Cromer with these steps gives that.
+    fn period(&self, modulus: f64, step: f64) -> f64 {
+        use thermo_elastic::{DENSITY, LENGTH};
+        let frequency = std::f64::consts::PI / LENGTH * (modulus / DENSITY).sqrt();
+        std::f64::consts::PI * step / (frequency * step / 2.0).asin()
+    }
+}
+
+/// Temperature of bar and plate where volume changes most, in the root mean square: `T0 beta/(rho c)` times
+/// the strain `v0/c_s`, over the square root of two. In the plate two components swing `sqrt 2` times as
+/// fast.
+fn warmth(couples: &thermo_elastic::ThermoElastic<f64>, modulus: f64) -> f64 {
+    let strain = thermo_elastic::VELOCITY / (modulus / thermo_elastic::DENSITY).sqrt();
+    couples.warming() * strain / 2.0_f64.sqrt()
+}
+
+/// The bar swings with the adiabatic modulus E + T0 beta^2/(rho c), whatever the reconstruction.
+#[test]
+fn heat_stiffens_the_bar() {
+    use materialpoint::reconstruction::{Shepard, Taylor};
+    use thermo_elastic::{YOUNGS_MODULUS, aluminium, bar};
+    let heat = aluminium(1, true);
+    let adiabatic = YOUNGS_MODULUS + heat.stiffening();
+    for cells in [10, 20] {
+        for particles in [true, false] {
+            let [slow, fast] = [false, true].map(|couples| {
+                let swing = match particles {
+                    true => bar(Shepard, cells, couples),
+                    false => bar(Taylor::<f64, 1, 3>::new(), cells, couples),
+                };
+                swing.unwrap()
+            });
+            let theory = Thermal::new(cells, particles);
+            for (swing, modulus) in [(slow, YOUNGS_MODULUS), (fast, adiabatic)] {
+                let expected = theory.period(theory.bar(modulus), swing.step);
+                assert!((swing.period / expected - 1.0).abs() < 1e-7, "{swing:?}");
+            }
+            // The grid's error is a factor that both have.
+            let ratio = (YOUNGS_MODULUS / adiabatic).sqrt();
+            assert!(
+                (fast.period / slow.period / ratio - 1.0).abs() < 1e-9,
+                "{fast:?} {slow:?}"
+            );
+            let critical = fast.critical_step / slow.critical_step;
+            assert!((critical / ratio - 1.0).abs() < 1e-5, "{fast:?} {slow:?}");
+
+            // At the extremes the particles rest, and heat has its share of the stored energy. A step may
+            // miss the extreme by half of itself: (pi/400)^2/2 of a temperature, twice that of an energy.
+            let missed = 1e-4;
+            let share = 1.0 - YOUNGS_MODULUS / adiabatic;
+            assert!((fast.heat / share - 1.0).abs() < missed, "{fast:?}");
+            // Velocities on hat functions that fit a sine best are too large at the nodes by (kh)^2/12, and
+            // so is the strain, its energy by twice that; smoothed by lumped masses they have the energy of
+            // the particles.
+            let excess = fast.temperature / warmth(&heat, adiabatic) - 1.0;
+            if particles {
+                assert!(excess.abs() < missed && fast.drift < 1e-10, "{fast:?}");
+            } else {
+                let near = |found: f64, theory: f64| assert!((found / theory - 1.0).abs() < 0.1, "{fast:?}");
+                near(excess, theory.squared / 12.0);
+                near(fast.drift, theory.squared / 6.0);
+            }
+            assert_eq!((slow.temperature, slow.heat), (0.0, 0.0));
+        }
+    }
+}
+
+/// In plane strain heat stiffens pressure waves, by as much as it adds to the first constant of Lame, and not
+/// shear waves. These warm nothing but what the grid takes for a change of volume: the divergence of its
+/// bilinear functions vanishes in a cell's mean only, an error of first order.
+#[test]
+fn heat_stiffens_the_plate_against_pressure_and_not_against_shear() {
+    use materialpoint::law::Moduli;
+    use materialpoint::reconstruction::{Shepard, Taylor};
+    use thermo_elastic::{Mode, POISSONS_RATIO, YOUNGS_MODULUS, aluminium, plate};
+    let moduli = Moduli::from_young(YOUNGS_MODULUS, POISSONS_RATIO).unwrap();
+    let heat = aluminium(2, true);
+    let adiabatic = moduli.p_wave() + heat.stiffening();
+    let swing = |cells, particles, couples, mode| match particles {
+        true => plate(Shepard, cells, couples, mode).unwrap(),
+        false => plate(Taylor::<f64, 2, 6>::new(), cells, couples, mode).unwrap(),
+    };
+    for particles in [true, false] {
+        let theory = Thermal::new(10, particles);
+        let expect = |couples, mode| {
+            let found = swing(10, particles, couples, mode);
+            let lambda = moduli.lambda + if couples { heat.stiffening() } else { 0.0 };
+            let expected = theory.period(theory.plate(lambda, moduli.mu, mode), found.step);
+            assert!((found.period / expected - 1.0).abs() < 1e-7, "{found:?}");
+            found
+        };
+        let [slow, fast] = [false, true].map(|couples| expect(couples, Mode::Pressure));
+        let [_, shear] = [false, true].map(|couples| expect(couples, Mode::Shear));
+
+        let ratio = (moduli.p_wave() / adiabatic).sqrt();
+        let critical = fast.critical_step / slow.critical_step;
+        assert!((critical / ratio - 1.0).abs() < 1e-3, "{fast:?} {slow:?}");
+        // The part that the grid takes for shear: of second order.
+        assert!(
+            (fast.period / slow.period / ratio - 1.0).abs() < theory.squared / 100.0,
+            "{fast:?}"
+        );
+        let share = 1.0 - moduli.p_wave() / adiabatic;
+        assert!(
+            (fast.heat / share - 1.0).abs() < theory.squared / 50.0,
+            "{fast:?}"
+        );
+        // As in the bar, once for each axis.
+        let excess = fast.temperature / warmth(&heat, adiabatic) - 1.0;
+        if particles {
+            assert!(
+                excess.abs() < theory.squared / 100.0 && fast.drift < 1e-10,
+                "{fast:?}"
+            );
+        } else {
+            assert!((excess / (theory.squared / 6.0) - 1.0).abs() < 0.1, "{fast:?}");
+        }
+
+        let finer = swing(20, particles, true, Mode::Shear);
+        assert!(
+            (shear.temperature / finer.temperature / 2.0 - 1.0).abs() < 0.02,
+            "{shear:?} {finer:?}"
+        );
+        assert!(
+            (shear.heat / finer.heat / 4.0 - 1.0).abs() < 0.02,
+            "{shear:?} {finer:?}"
+        );
+    }
+}
+
+/// Stretching cools (Gough and Joule): aluminium by 2.8 mK for each MPa along a bar, `alpha T0/(rho c)`. Heat
+/// pushes outwards.
+#[test]
+fn stretching_cools_and_warmth_pushes() {
+    use materialpoint::phase::Phase;
+    use nalgebra::matrix;
+    use thermo_elastic::{
+        EXPANSION, HEAT_CAPACITY, TEMPERATURE, ThermoElastic, Warmth, YOUNGS_MODULUS, aluminium,
+    };
+    let (heat, mut warmth) = (aluminium(1, true), Warmth(0.0));
+    heat.update(&matrix![1e6 / YOUNGS_MODULUS], &mut warmth);
+    let expected = -EXPANSION * TEMPERATURE / HEAT_CAPACITY * 1e6;
+    assert!((warmth.0 / expected - 1.0).abs() < 1e-14 && (expected + 2.8e-3).abs() < 5e-5);
+    let total = heat.total_stress(&matrix![0.0], &Warmth(1.0))[(0, 0)];
+    assert!(
+        (total / (-YOUNGS_MODULUS * EXPANSION) - 1.0).abs() < 1e-14,
+        "{total}"
+    );
+
+    // Shear at constant volume does neither.
+    let (heat, mut warmth) = (aluminium(2, true), Warmth(0.0));
+    heat.update(&matrix![1e-5, 3e-5; -2e-5, -1e-5], &mut warmth);
+    assert_eq!(warmth.0, 0.0);
+    let cold = ThermoElastic {
+        temperature: 0.0,
+        ..heat
+    };
+    assert!(Phase::<f64, 2>::validate(&heat).is_ok() && Phase::<f64, 2>::validate(&cold).is_err());
+}
+
+/// What the example prints: 1 - sqrt(E/E_s) = 0.2234 % and 1 - sqrt(M/M_s) = 1.284 % for aluminium, 2.701 mK.
+#[test]
+fn the_thermal_example_prints_what_theory_says() {
+    let found = thermo_elastic::run().unwrap();
+    assert!((found.bar - 2.2342e-3).abs() < 1e-7, "{found:?}");
+    let [pressure, shear] = found.plate;
+    assert!(
+        (pressure - 1.284e-2).abs() < 2e-5 && (0.0..3e-4).contains(&shear),
+        "{found:?}"
+    );
+    assert!((found.swing.temperature - 2.701e-3).abs() < 1e-6, "{found:?}");
 }
 
 /// What a page shows of an example stands there word for word, and the README's program is the library's first one.
