@@ -1,5 +1,8 @@
 //! Every example runs, and what it prints is right.
 
+// Its dual numbers serve `laws` too.
+#[path = "../../examples/derivative.rs"]
+pub mod derivative;
 #[path = "../../examples/fit_field.rs"]
 mod fit_field;
 // Its runs serve `hard_cases` too, and so does the bar of `stability_map`.
@@ -97,6 +100,50 @@ fn the_own_law_conforms() {
         stable: true,
     };
     check_law::<f64, 1, _>(&law, &sample, &claims).unwrap();
+}
+
+/// Central differences are good to the step squared, (epsilon^(1/3))^2 = 4e-11 times the third derivative,
+/// and to as much from round-off; the continuous bar is met the better the more cells there are, at least to
+/// first order.
+#[test]
+fn a_run_carries_its_derivative() {
+    let [coarse, fine] = [10, 40].map(|cells| derivative::run(cells).unwrap());
+    assert_eq!((coarse.len(), fine.len()), (6, 6));
+    for (coarse, fine) in coarse.iter().zip(&fine) {
+        for row in [coarse, fine] {
+            assert!(row.from_differences < 1e-8, "{row:?}");
+            assert!(row.values < 1e-12, "{row:?}");
+        }
+        assert!(coarse.from_exact < 5e-2, "{coarse:?}");
+        assert!(fine.from_exact < coarse.from_exact / 4.0, "{coarse:?} {fine:?}");
+    }
+}
+
+/// The slopes of the functions of dual numbers are those of their values.
+#[test]
+fn dual_numbers_know_their_functions() {
+    use derivative::dual::Dual;
+    use nalgebra::{ComplexField, RealField};
+    macro_rules! check {
+        ($x:expr; $($name:ident($($argument:expr),*)),*) => {$(
+            let step = f64::EPSILON.cbrt();
+            let at = |x: f64| x.$name($($argument),*);
+            let slope = (at($x + step) - at($x - step)) / (2.0 * step);
+            let found = ComplexField::$name(Dual::new($x, 2.0) $(, $argument.into())*);
+            assert_eq!(found.value, at($x), stringify!($name));
+            assert!((found.derivative - 2.0 * slope).abs() < 1e-8, stringify!($name));
+        )*};
+    }
+    check!(0.6; sqrt(), cbrt(), exp(), exp2(), exp_m1(), ln(), ln_1p(), log2(), log10());
+    check!(0.6; recip(), powf(1.7), log(3.0));
+    check!(0.6; sin(), cos(), tan(), asin(), acos(), atan(), sinh(), cosh(), tanh(), asinh(), atanh());
+    check!(1.6; acosh());
+    // d (x^x) = x^x (ln x + 1) dx, d atan2(x, 1 - x) = dx / (x^2 + (1 - x)^2).
+    let x = Dual::new(0.6, 1.0);
+    let power = ComplexField::powf(x, x);
+    assert!((power.derivative - 0.6_f64.powf(0.6) * (0.6_f64.ln() + 1.0)).abs() < 1e-15);
+    let angle = RealField::atan2(x, Dual::from(1.0) - x);
+    assert!((angle.derivative - 1.0 / 0.52).abs() < 1e-14);
 }
 
 /// The basis of the example keeps what a basis promises, four points at once too.
