@@ -6,7 +6,6 @@
 mod conformance;
 mod derivatives;
 mod drucker_prager;
-mod dual;
 mod elastic;
 mod fluid;
 mod invariance;
@@ -18,6 +17,7 @@ mod strain_for;
 mod strength;
 mod von_mises;
 
+use crate::examples::derivative::dual;
 use materialpoint::law::{ConstitutiveLaw, Moduli};
 use nalgebra::{Matrix3, SMatrix};
 

@@ -1,15 +1,19 @@
-//! Dual numbers as nalgebra's real number.
+//! Dual numbers as nalgebra's real numbers.
+
+use std::f64::consts::{LN_2, LN_10};
 
 use nalgebra::{ComplexField, RealField};
 use num_traits::{One, Signed, Zero};
 
 use super::Dual;
 
-/// Functions that do not exist in this scalar.
-macro_rules! absent {
-    ($($name:ident($($argument:ident),*) -> $result:ty),* $(,)?) => {$(
-        fn $name(self $(, $argument: Self)*) -> $result {
-            panic!(concat!("these dual numbers have no ", stringify!($name)))
+/// Functions of one number, by value and slope at `x`; `y` is the value.
+macro_rules! functions {
+    ($($name:ident: |$x:ident, $y:ident| $slope:expr;)*) => {$(
+        fn $name(self) -> Self {
+            let $x = self.value;
+            let $y = $x.$name();
+            self.chain($y, $slope)
         }
     )*};
 }
@@ -101,31 +105,32 @@ impl ComplexField for Dual {
         self
     }
 
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        self.chain(root, 0.5 / root)
+    functions! {
+        sqrt: |_x, y| 0.5 / y;
+        cbrt: |_x, y| 1.0 / (3.0 * y * y);
+        exp: |_x, y| y;
+        exp2: |_x, y| y * LN_2;
+        exp_m1: |_x, y| y + 1.0;
+        ln: |x, _y| 1.0 / x;
+        ln_1p: |x, _y| 1.0 / (1.0 + x);
+        log2: |x, _y| 1.0 / (x * LN_2);
+        log10: |x, _y| 1.0 / (x * LN_10);
+        sin: |x, _y| x.cos();
+        cos: |x, _y| -x.sin();
+        tan: |_x, y| 1.0 + y * y;
+        asin: |x, _y| 1.0 / (1.0 - x * x).sqrt();
+        acos: |x, _y| -1.0 / (1.0 - x * x).sqrt();
+        atan: |x, _y| 1.0 / (1.0 + x * x);
+        sinh: |x, _y| x.cosh();
+        cosh: |x, _y| x.sinh();
+        tanh: |_x, y| 1.0 - y * y;
+        asinh: |x, _y| 1.0 / (x * x + 1.0).sqrt();
+        acosh: |x, _y| 1.0 / (x * x - 1.0).sqrt();
+        atanh: |x, _y| 1.0 / (1.0 - x * x);
     }
 
-    fn exp(self) -> Self {
-        let power = self.value.exp();
-        self.chain(power, power)
-    }
-
-    fn ln(self) -> Self {
-        self.chain(self.value.ln(), 1.0 / self.value)
-    }
-
-    fn cbrt(self) -> Self {
-        let root = self.value.cbrt();
-        self.chain(root, 1.0 / (3.0 * root * root))
-    }
-
-    fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
-    }
-
-    fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
+    fn log(self, base: Self) -> Self {
+        ComplexField::ln(self) / ComplexField::ln(base)
     }
 
     fn sin_cos(self) -> (Self, Self) {
@@ -145,12 +150,19 @@ impl ComplexField for Dual {
         self.value.is_finite()
     }
 
-    absent! {
-        tan() -> Self, asin() -> Self, acos() -> Self, atan() -> Self,
-        sinh() -> Self, cosh() -> Self, tanh() -> Self, asinh() -> Self, acosh() -> Self, atanh() -> Self,
-        exp2() -> Self, exp_m1() -> Self, ln_1p() -> Self,
-        log2() -> Self, log10() -> Self, log(_base) -> Self,
-        powf(_n) -> Self, powc(_n) -> Self,
+    fn powf(self, n: Self) -> Self {
+        let power = self.value.powf(n.value);
+        let by_base = n.value * self.value.powf(n.value - 1.0) * self.derivative;
+        // Of a base that is not positive the exponent must be a plain number.
+        let by_exponent = match n.derivative {
+            0.0 => 0.0,
+            derivative => power * self.value.ln() * derivative,
+        };
+        Self::new(power, by_base + by_exponent)
+    }
+
+    fn powc(self, n: Self) -> Self {
+        self.powf(n)
     }
 }
 
@@ -192,7 +204,11 @@ impl RealField for Dual {
         RealField::min(RealField::max(self, min), max)
     }
 
-    absent! { atan2(_other) -> Self }
+    fn atan2(self, other: Self) -> Self {
+        let squared = self.value * self.value + other.value * other.value;
+        let turn = self.derivative * other.value - self.value * other.derivative;
+        Self::new(self.value.atan2(other.value), turn / squared)
+    }
 
     fn min_value() -> Option<Self> {
         Some(Self::from(f64::MIN))

@@ -1,4 +1,4 @@
-//! A scalar that carries a derivative: the least of dual numbers that a law computes with.
+//! A scalar that carries a derivative: dual numbers with all that the library asks of a real number.
 //!
 //! Comparisons and `is_zero` see the value alone, as those of dual numbers do: a number that is zero may have
 //! a derivative.
