@@ -46,12 +46,6 @@ impl<T: Scalar> ThermoElastic<T> {
     pub fn warming(&self) -> T {
         self.temperature * self.thermal_stress / self.heat_capacity
     }
-
-    /// Energy (J/m3) to which a change of temperature amounts beside the isothermal strain energy: their sum
-    /// with the kinetic energy is constant.
-    pub fn energy_density(&self, change: T) -> T {
-        self.heat_capacity * change * change / (T::lit(2.0) * self.temperature)
-    }
 }
 
 /// Change of temperature (K) of a particle. Its default is none.
@@ -75,6 +69,11 @@ impl<T: Scalar, const D: usize> Phase<T, D> for ThermoElastic<T> {
 
     fn update(&self, increment: &SMatrix<T, D, D>, particle: &mut Warmth<T>) {
         particle.0 -= self.warming() * increment.trace();
+    }
+
+    /// With the strain energy at constant temperature and that of motion it is constant.
+    fn energy_density(&self, particle: &Warmth<T>) -> T {
+        self.heat_capacity * particle.0 * particle.0 / (T::lit(2.0) * self.temperature)
     }
 
     fn validate(&self) -> Result<(), SetupError> {
@@ -255,10 +254,10 @@ where
         temperature = temperature.max((squares.sum::<f64>() / particles.len() as f64).sqrt());
         let stored = particles.phase.iter().zip(&particles.volume);
         let stored: f64 = stored
-            .map(|(warmth, volume)| phase.energy_density(warmth.0) * volume)
+            .map(|(warmth, volume)| Phase::<f64, D>::energy_density(&phase, warmth) * volume)
             .sum();
-        // The stepper's energy is that of motion and strain at the start of the step, without the heat.
-        let energy = stepper.step_and_measure(step, step, &rollers)?.total() + stored;
+        // At the start of the step, as the heat is.
+        let energy = stepper.step_and_measure(step, step, &rollers)?.total();
         let first = *start.get_or_insert(energy);
         heat = heat.max(stored / energy);
         drift = drift.max((energy / first - 1.0).abs());

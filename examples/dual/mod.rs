@@ -11,11 +11,14 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Rem, RemAssi
 /// `value + derivative d` with `d^2 = 0`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Dual {
+    /// The number.
     pub value: f64,
+    /// Its derivative.
     pub derivative: f64,
 }
 
 impl Dual {
+    /// A number with its derivative.
     pub fn new(value: f64, derivative: f64) -> Self {
         Self { value, derivative }
     }

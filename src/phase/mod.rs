@@ -34,8 +34,15 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
     /// Stress (Pa) that the momentum balance of the whole feels, given the solid's effective stress.
     fn total_stress(&self, effective: &SMatrix<T, D, D>, particle: &Self::Particle) -> SMatrix<T, D, D>;
 
-    /// Carries the data of a phase that does not flow over the displacement gradient `increment` of one step.
+    /// Carries the data of a phase that does not flow over the displacement gradient `increment` of one step. Asked of copies
+    /// of the data too, with small increments, to find how stiff the phase is: nothing but the data may change.
     fn update(&self, increment: &SMatrix<T, D, D>, particle: &mut Self::Particle);
+
+    /// Energy that the phase stores beside the strain energy of the law, per volume (J/m3): heat, a compressed liquid.
+    fn energy_density(&self, _particle: &Self::Particle) -> T {
+        const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `energy_density`") };
+        T::zero()
+    }
 
     /// Checks the constants.
     ///
@@ -103,17 +110,6 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
     /// Stiffness (Pa) of the liquid in its pores: pressure rate per volume rate of the liquid's flow, `K / n`.
     fn liquid_stiffness(&self) -> T {
         const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `liquid_stiffness`") };
-        T::zero()
-    }
-
-    /// Energy that the compressed liquid stores, per volume (J/m3).
-    fn liquid_energy_density(&self, _particle: &Self::Particle) -> T {
-        const {
-            assert!(
-                !Self::FLOWS,
-                "a phase that FLOWS wants an own `liquid_energy_density`"
-            )
-        };
         T::zero()
     }
 }

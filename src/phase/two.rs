@@ -220,7 +220,7 @@ impl<T: Scalar, const D: usize> Phase<T, D> for TwoPhase<T> {
         self.liquid_bulk_modulus / self.porosity
     }
 
-    fn liquid_energy_density(&self, particle: &PoreLiquid<T, D>) -> T {
+    fn energy_density(&self, particle: &PoreLiquid<T, D>) -> T {
         let two = T::lit(2.0);
         particle.pressure * particle.pressure * self.porosity / (two * self.liquid_bulk_modulus)
     }

@@ -159,11 +159,7 @@ where
             speed = speed.max(crossing(&liquid.velocity));
             self.coupled(p).stable_step(stiffness)?
         } else {
-            let density = particles.mass[p] / particles.volume[p];
-            let wave = self
-                .law
-                .wave_speed(density, &particles.stress[p], self.law.of(&particles.state, p));
-            let step = T::lit(2.0) / (wave * stiffness.sqrt());
+            let step = T::lit(2.0) / (self.wave_speed(p) * stiffness.sqrt());
             CriticalStep {
                 step,
                 mechanism: Mechanism::Wave,

@@ -277,14 +277,35 @@ where
 {
     /// Largest speed (m/s) of a wave through the solid.
     fn largest_wave_speed(&self) -> T {
+        let speeds = (0..self.particles.len()).map(|p| self.wave_speed(p));
+        speeds.fold(T::zero(), T::max)
+    }
+
+    /// Speed (m/s) of the fastest wave at particle `p`, of the law and, unless a liquid flows, with what the phase adds to its
+    /// stiffness.
+    pub(super) fn wave_speed(&self, p: usize) -> T {
         let particles = &self.particles;
-        (0..particles.len())
-            .map(|p| {
-                let density = particles.mass[p] / particles.volume[p];
-                self.law
-                    .wave_speed(density, &particles.stress[p], self.law.of(&particles.state, p))
-            })
-            .fold(T::zero(), T::max)
+        let density = particles.mass[p] / particles.volume[p];
+        let state = self.law.of(&particles.state, p);
+        let speed = self.law.wave_speed(density, &particles.stress[p], state);
+        if !P::COUPLED || P::FLOWS {
+            return speed;
+        }
+        (speed * speed + self.phase_stiffness(p) / density).max(T::zero()).sqrt()
+    }
+
+    /// How much a phase that does not flow adds to the modulus (Pa) of a wave along the stiffest axis, by a small strain.
+    pub(super) fn phase_stiffness(&self, p: usize) -> T {
+        let (phase, data) = (&self.phase, &self.particles.phase[p]);
+        let (strain, nothing) = (T::lit(PROBE_STRAIN), SMatrix::zeros());
+        let before = phase.total_stress(&nothing, data);
+        let along = (0..D).map(|axis| {
+            let (mut increment, mut strained) = (nothing, *data);
+            increment[(axis, axis)] = strain;
+            phase.update(&increment, &mut strained);
+            (phase.total_stress(&nothing, &strained) - before)[(axis, axis)] / strain
+        });
+        along.fold(-T::lit(f64::INFINITY), T::max)
     }
 
     /// The material at particle `p`.

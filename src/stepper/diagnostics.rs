@@ -189,7 +189,7 @@ where
         }
     }
 
-    /// Strain energy of the particles as they are, the liquid's included.
+    /// Strain energy of the particles as they are, what a phase stores included.
     pub(super) fn strain_energy(&self) -> T {
         let particles = &self.particles;
         let mut densities = [T::zero(); BLOCK];
@@ -201,8 +201,8 @@ where
                 .energy_densities(&particles.stress[first..end], states, &mut densities);
             for (p, &solid) in (first..end).zip(&densities) {
                 let mut density = solid;
-                if P::FLOWS {
-                    density += self.phase.liquid_energy_density(&particles.phase[p]);
+                if P::COUPLED {
+                    density += self.phase.energy_density(&particles.phase[p]);
                 }
                 sum += density * particles.volume[p];
             }

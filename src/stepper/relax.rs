@@ -146,7 +146,15 @@ where
             state: &particles.state,
         };
         self.law.wave_speeds(which, &bodies, speeds);
+        if !P::COUPLED {
+            return;
+        }
         if !P::FLOWS {
+            for (speed, &p) in speeds.iter_mut().zip(which) {
+                let p = p as usize;
+                let added = self.phase_stiffness(p) * particles.volume[p] / particles.mass[p];
+                *speed = (*speed * *speed + added).max(T::zero()).sqrt();
+            }
             return;
         }
         for (speed, &p) in speeds.iter_mut().zip(which) {

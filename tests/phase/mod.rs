@@ -70,6 +70,9 @@ fn compare<R: Reconstruction<f64, 1> + Clone>(reconstruction: R) {
     let forcing = fixed_ends();
     let steps = [wet.critical_step(&forcing), dry.critical_step(&forcing)].map(|limit| limit.unwrap().step);
     approx::assert_relative_eq!(steps[0], steps[1], max_relative = 1e-6);
+    // The step that a scene takes without being told one: it must feel the phase too.
+    let automatic = [wet.largest_step(400.0), dry.largest_step(400.0)].map(|limit| limit.unwrap().step);
+    approx::assert_relative_eq!(automatic[0], automatic[1], max_relative = 1e-12);
     for _ in 0..200 {
         wet.step(2e-5, &forcing).unwrap();
         dry.step(2e-5, &forcing).unwrap();
