@@ -55,7 +55,11 @@ impl<T: Scalar> AxisBasis<T, 4> for Swapped {
         let (below, share) = if at.cell == 0 { (1, one) } else { (0, half) };
         slope[below] = slope[below] - of_left * share;
         slope[2] = slope[2] + of_left * share;
-        let (above, share) = if at.cell + 1 == at.cells { (2, one) } else { (3, half) };
+        let (above, share) = if at.cell + 1 == at.cells {
+            (2, one)
+        } else {
+            (3, half)
+        };
         slope[1] = slope[1] - of_right * share;
         slope[above] = slope[above] + of_right * share;
         let value = [zero, left, right, zero];

@@ -134,12 +134,7 @@ macro_rules! degree {
             }
 
             #[inline(always)]
-            fn evaluate<K: Lanes<T>>(
-                &self,
-                k: K,
-                at: AxisCell,
-                unit: K::V,
-            ) -> Functions<K::V, $width> {
+            fn evaluate<K: Lanes<T>>(&self, k: K, at: AxisCell, unit: K::V) -> Functions<K::V, $width> {
                 if all_knots_distinct($degree, at.cells, at.cell) {
                     inner(k, unit)
                 } else {

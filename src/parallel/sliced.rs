@@ -89,7 +89,10 @@ impl<W: Sliced + Default, const N: usize> Sliced for [W; N] {
             }
             None => W::default(),
         });
-        (rest.map(|part| part.map_or_else(W::default, |(first, _)| first)), later)
+        (
+            rest.map(|part| part.map_or_else(W::default, |(first, _)| first)),
+            later,
+        )
     }
 }
 

@@ -566,7 +566,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         } else {
             (free(&fits, cloud, cell, &value), fits.free_is_full())
         };
-        self.rule.emit(&fits.patch, &coefficients, &mut |point, value| sink(point, value));
+        self.rule
+            .emit(&fits.patch, &coefficients, &mut |point, value| sink(point, value));
         full
     }
 

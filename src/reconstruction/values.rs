@@ -83,7 +83,8 @@ impl<T: Scalar, const D: usize> Values<T, MassMomentum<T, D>> for Densities<'_, 
 
     #[inline(always)]
     fn four<K: Packs<T>, const C: usize>(&self, k: K, first: usize) -> [K::V; C] {
-        let density = four_numbers::<T, K>(k, self.masses, first) / four_numbers::<T, K>(k, self.volumes, first);
+        let density =
+            four_numbers::<T, K>(k, self.masses, first) / four_numbers::<T, K>(k, self.volumes, first);
         let mut components = [density; C];
         for a in 0..D.min(C - 1) {
             components[1 + a] = four_components::<T, K, D>(k, self.velocities, first, a) * density;

@@ -110,11 +110,7 @@ impl<T: Scalar> Lanes<T> for Plain {
     }
 
     #[inline(always)]
-    fn one_by_one<const W: usize>(
-        self,
-        pack: Four<T>,
-        f: impl FnMut(T) -> [[T; W]; 2],
-    ) -> [[Four<T>; W]; 2] {
+    fn one_by_one<const W: usize>(self, pack: Four<T>, f: impl FnMut(T) -> [[T; W]; 2]) -> [[Four<T>; W]; 2] {
         packs(pack.0, f, Four)
     }
 

@@ -1,8 +1,8 @@
 //! Packs that are vectors of the processor, and the choice of packs at run time.
 
 use std::any::{Any, TypeId};
-use std::sync::OnceLock;
 use std::ops::{Add, Div, Mul, Sub};
+use std::sync::OnceLock;
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Select, f32x4, f32x8, f64x4};
@@ -179,16 +179,13 @@ vector!(Doubles, Double4, f64x4, f64, 4, |simd, packs| {
     let half = inlined(
         #[inline(always)]
         |pack: Double4<S>| {
-        let (low, high) = simd.split_f64x4(pack.0);
-        low + high
-    },
+            let (low, high) = simd.split_f64x4(pack.0);
+            low + high
+        },
     );
     let [a, b, c, d] = packs;
     let [a, b, c, d] = [half(a), half(b), half(c), half(d)];
-    let [ab, cd] = [
-        a.unzip_low(b) + a.unzip_high(b),
-        c.unzip_low(d) + c.unzip_high(d),
-    ];
+    let [ab, cd] = [a.unzip_low(b) + a.unzip_high(b), c.unzip_low(d) + c.unzip_high(d)];
     let ([a, b], [c, d]) = (ab.to_array(), cd.to_array());
     [a, b, c, d]
 });
@@ -202,9 +199,9 @@ vector!(ManySingles, Single8, f32x8, f32, 8, |simd, packs| {
     let half = inlined(
         #[inline(always)]
         |pack: Single8<S>| {
-        let (low, high) = simd.split_f32x8(pack.0);
-        low + high
-    },
+            let (low, high) = simd.split_f32x8(pack.0);
+            low + high
+        },
     );
     let [a, b, c, d] = packs;
     let [a, b, c, d] = [half(a), half(b), half(c), half(d)];

@@ -24,7 +24,8 @@ where
         if R::PARTICLE_MATRIX {
             self.solve_accelerations(forcing);
         } else {
-            let (forces, masses, body_force) = (&mut self.dofs.force[..], &self.dofs.mass[..], forcing.body_force);
+            let (forces, masses, body_force) =
+                (&mut self.dofs.force[..], &self.dofs.mass[..], forcing.body_force);
             with_features(
                 #[inline(always)]
                 move || divide_by_masses(forces, masses, body_force),

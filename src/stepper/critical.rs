@@ -291,7 +291,9 @@ where
         if !P::COUPLED || P::FLOWS {
             return speed;
         }
-        (speed * speed + self.phase_stiffness(p) / density).max(T::zero()).sqrt()
+        (speed * speed + self.phase_stiffness(p) / density)
+            .max(T::zero())
+            .sqrt()
     }
 
     /// How much a phase that does not flow adds to the modulus (Pa) of a wave along the stiffest axis, by a small strain.

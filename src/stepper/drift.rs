@@ -41,28 +41,31 @@ pub(super) fn move_particles<T, const D: usize, B, L, P, const C: usize>(
         PerSpan(&mut spans.moved),
         PerSpan(&mut spans.bounds),
     );
-    each_span(
-        parallel,
-        PARTICLES,
-        work,
-        &|first, (mut particles, cells, found, bounds)| {
-            let mut flaw = None;
-            let (places, mut material) = particles.places_and_material(cells);
-            let outcome = drift(basis, grid, motion, places, &mut |p, increments| {
-                let some = material.some(p, increments[0].len());
-                flaw = deform(matter, motion.dt, increments, some).map(|(k, flaw)| (p + k, flaw));
-                flaw.is_none()
-            });
-            bounds.set(outcome.bounds);
-            found.set(moved(first, &outcome, flaw));
-        },
-    );
+    each_span(parallel, PARTICLES, work, &|first,
+                                           (
+        mut particles,
+        cells,
+        found,
+        bounds,
+    )| {
+        let mut flaw = None;
+        let (places, mut material) = particles.places_and_material(cells);
+        let outcome = drift(basis, grid, motion, places, &mut |p, increments| {
+            let some = material.some(p, increments[0].len());
+            flaw = deform(matter, motion.dt, increments, some).map(|(k, flaw)| (p + k, flaw));
+            flaw.is_none()
+        });
+        bounds.set(outcome.bounds);
+        found.set(moved(first, &outcome, flaw));
+    });
 }
 
 /// What became of a span's particles, the first of which has the number `first`. Of particles at fault the first one is told.
 fn moved<T>(first: usize, outcome: &Outcome, flaw: Option<(usize, Flaw<T>)>) -> Moved<T> {
     let fault = match (flaw, outcome.left) {
-        (Some((p, flaw)), left) if left.is_none_or(|left| p <= left) => Some(Fault::Material(first + p, flaw)),
+        (Some((p, flaw)), left) if left.is_none_or(|left| p <= left) => {
+            Some(Fault::Material(first + p, flaw))
+        }
         (_, left) => left.map(|p| Fault::Left(first + p)),
     };
     Moved {

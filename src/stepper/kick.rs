@@ -131,22 +131,26 @@ where
         store.windows(windows, &mut momenta),
         PerSpan(&mut totals[..]),
     );
-    each_span(
-        parallel,
-        span,
-        work,
-        &|_, (places, (masses, volumes), (velocities, data), windows, found)| {
-            let mut sums = InSpan::new(windows);
-            let velocities = Velocities {
-                dt,
-                masses,
-                volumes,
-                velocities,
-                data,
-                phase,
-                liquid_mass: T::zero(),
-            };
-            let (momenta, kicked): ([Momentum<T, D>; C], _) = for_values!(B, basis, |basis| kick::<M, _, D, _, _, C>(
+    each_span(parallel, span, work, &|_,
+                                      (
+        places,
+        (masses, volumes),
+        (velocities, data),
+        windows,
+        found,
+    )| {
+        let mut sums = InSpan::new(windows);
+        let velocities = Velocities {
+            dt,
+            masses,
+            volumes,
+            velocities,
+            data,
+            phase,
+            liquid_mass: T::zero(),
+        };
+        let (momenta, kicked): ([Momentum<T, D>; C], _) =
+            for_values!(B, basis, |basis| kick::<M, _, D, _, _, C>(
                 basis,
                 grid,
                 places,
@@ -154,14 +158,13 @@ where
                 velocities,
                 move |dof, sum| sums.add(dof, sum),
             ));
-            let mut total = Totals::zero();
-            for q in 0..C {
-                total.momenta[q] = momenta[q];
-            }
-            total.liquid_mass = kicked.liquid_mass;
-            found.set(total);
-        },
-    );
+        let mut total = Totals::zero();
+        for q in 0..C {
+            total.momenta[q] = momenta[q];
+        }
+        total.liquid_mass = kicked.liquid_mass;
+        found.set(total);
+    });
     if M > 0 {
         store.add_up(windows, &mut momenta);
     }

@@ -227,8 +227,12 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
         }
         // Beyond one dimension windows grow by whole rows when particles cross.
         if D > 1 {
-            of_scalars.iter_mut().for_each(|store| reserve(store, MOST_OVERLAP * dofs));
-            of_vectors.iter_mut().for_each(|store| reserve(store, MOST_OVERLAP * dofs));
+            of_scalars
+                .iter_mut()
+                .for_each(|store| reserve(store, MOST_OVERLAP * dofs));
+            of_vectors
+                .iter_mut()
+                .for_each(|store| reserve(store, MOST_OVERLAP * dofs));
         }
     }
 

@@ -163,7 +163,10 @@ where
             let total = |p: usize| phase.total_stress(&effective[p], &data[p]);
             fitted.forces::<1>(total, Targets::<T, D, 0, 0, 1>::of_forces(first(forces)));
         } else {
-            fitted.forces::<1>(Stored(effective), Targets::<T, D, 0, 0, 1>::of_forces(first(forces)));
+            fitted.forces::<1>(
+                Stored(effective),
+                Targets::<T, D, 0, 0, 1>::of_forces(first(forces)),
+            );
         }
         if by_four && !R::KEEPS_FITS {
             let reduced = self.spans.reduced.iter().sum();
@@ -205,10 +208,8 @@ where
 
     pub(super) fn kick_phases<const C: usize, const M: usize>(&mut self, dt: T) -> Totals<T, D> {
         let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
-        let momenta = Targets::<T, D, 0, M, 0>::of_momenta(first([
-            &mut solid.velocity[..],
-            &mut liquid.velocity[..],
-        ]));
+        let momenta =
+            Targets::<T, D, 0, M, 0>::of_momenta(first([&mut solid.velocity[..], &mut liquid.velocity[..]]));
         kick_particles::<_, D, _, _, _, C, M>(
             (&self.basis, &self.grid, &self.bins),
             &mut self.particles,

@@ -184,7 +184,9 @@ pub(super) struct Targets<'a, T, const D: usize, const S: usize, const C: usize,
     pub(super) forces: [&'a mut [SVector<T, D>]; G],
 }
 
-impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize> Targets<'a, T, D, S, C, G> {
+impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize>
+    Targets<'a, T, D, S, C, G>
+{
     /// Of the solid and, where there is one, of the liquid.
     pub(super) fn new(solid: &'a mut Dofs<T, D>, liquid: &'a mut Dofs<T, D>, drag: &'a mut [T]) -> Self {
         Self {
@@ -257,7 +259,11 @@ impl<T: Scalar, const D: usize> Store<T, D> {
     ) -> AllWindows<'a, T, D, S, C, G> {
         let (of_momenta, of_forces) = self.vectors.split_at_mut(2);
         (
-            windows(spans, &mut self.scalars, targets.scalars.each_mut().map(|t| &mut **t)),
+            windows(
+                spans,
+                &mut self.scalars,
+                targets.scalars.each_mut().map(|t| &mut **t),
+            ),
             windows(spans, of_momenta, targets.vectors.each_mut().map(|t| &mut **t)),
             windows(spans, of_forces, targets.forces.each_mut().map(|t| &mut **t)),
         )
@@ -290,7 +296,9 @@ pub(super) struct InSpan<'a, T, const D: usize, const S: usize, const C: usize, 
     forces: [&'a mut [SVector<T, D>]; G],
 }
 
-impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize> InSpan<'a, T, D, S, C, G> {
+impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize>
+    InSpan<'a, T, D, S, C, G>
+{
     #[inline(always)]
     pub(super) fn new((scalars, vectors, forces): AllWindows<'a, T, D, S, C, G>) -> Self {
         let mut first = 0;
@@ -381,33 +389,35 @@ pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C:
         &particles.phase[..],
         store.windows(spans, &mut targets),
     );
-    each_span(
-        parallel,
-        span,
-        work,
-        &|_, (places, (masses, volumes), (velocities, stresses), data, windows)| {
-            let mut sums = InSpan::new(windows);
-            let amounts = Amounts {
-                masses,
-                volumes,
-                velocities,
-                stresses,
-                data,
-                phase,
-                even,
-            };
-            if const { G > 0 } {
-                p2g(basis, grid, places, amounts, move |dof, sum| sums.add(dof, sum));
-            } else {
-                for_values!(B, basis, |basis| p2g(
-                    basis,
-                    grid,
-                    places,
-                    amounts,
-                    move |dof, sum| sums.add(dof, sum)
-                ));
-            }
-        },
-    );
+    each_span(parallel, span, work, &|_,
+                                      (
+        places,
+        (masses, volumes),
+        (velocities, stresses),
+        data,
+        windows,
+    )| {
+        let mut sums = InSpan::new(windows);
+        let amounts = Amounts {
+            masses,
+            volumes,
+            velocities,
+            stresses,
+            data,
+            phase,
+            even,
+        };
+        if const { G > 0 } {
+            p2g(basis, grid, places, amounts, move |dof, sum| sums.add(dof, sum));
+        } else {
+            for_values!(B, basis, |basis| p2g(
+                basis,
+                grid,
+                places,
+                amounts,
+                move |dof, sum| sums.add(dof, sum)
+            ));
+        }
+    });
     store.add_up(spans, &mut targets);
 }

@@ -267,7 +267,13 @@ fn factorise_any<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
     let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
     let share = k.splat(T::lit(GRAM_SHARE));
     let rounding = k.splat(T::lit(ROUNDING) * T::default_epsilon());
-    let (total, numbers) = (gram[0][0], k.new(in_lanes(#[inline(always)] |l| T::count(counts[l]))));
+    let (total, numbers) = (
+        gram[0][0],
+        k.new(in_lanes(
+            #[inline(always)]
+            |l| T::count(counts[l]),
+        )),
+    );
     let mut l = [[zero; NB]; NB];
     let (mut doubt, mut functions) = (zero, zero);
     for m in first..NB {

@@ -68,9 +68,9 @@ pub(crate) fn shift_lanes<T: Scalar, K: Lanes<T>, const D: usize, const NB: usiz
 mod tests {
     use super::super::taylor_functions;
     use super::*;
+    use crate::simd::{Four, Plain};
     use approx::assert_relative_eq;
     use nalgebra::{SVector, vector};
-    use crate::simd::{Four, Plain};
 
     fn check<const D: usize, const NB: usize>(s: SVector<f64, D>) {
         for axis in 0..D {

@@ -2,8 +2,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::simd::is;
 use crate::scalar::Scalar;
+use crate::simd::is;
 
 /// Sweeps after which the iteration ends whatever is left. Convergence is quadratic: a 3 x 3 tensor takes three to five.
 const SWEEPS: usize = 12;

@@ -15,7 +15,7 @@ use crate::field::{Field, MassMomentum, Pair};
 use crate::grid::Cell;
 use crate::reconstruction::{Cloud, Point, Reconstruction, Values, four_cells};
 use crate::scalar::Scalar;
-use crate::simd::{LANES, Number, Packs, dispatch_vectors, each, inlined, in_lanes};
+use crate::simd::{LANES, Number, Packs, dispatch_vectors, each, in_lanes, inlined};
 use crate::taylor::MOST_COMPONENTS;
 
 /// Most points along an axis.
@@ -286,9 +286,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 let parts = I::parts(&value, &[T::one(); D]);
                 let (cell, x) = (&point.cell, &point.position);
                 if point.moves {
-                    return fits
-                        .moving
-                        .for_each(grid, cell, x, |i, phi, gradient| sink(i, Sum::of(&parts, phi, &gradient)));
+                    return fits.moving.for_each(grid, cell, x, |i, phi, gradient| {
+                        sink(i, Sum::of(&parts, phi, &gradient))
+                    });
                 }
                 let masses = I::masses(&value);
                 basis.for_each(grid, cell, x, |i, phi, gradient| {
@@ -304,9 +304,13 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 });
             };
             let cell = occupied[place] as usize;
-            let full = fits
-                .reconstruction
-                .integrate_hard(fits.cloud, cell, I::CONSERVED, &|p| value.at(p), &mut add);
+            let full = fits.reconstruction.integrate_hard(
+                fits.cloud,
+                cell,
+                I::CONSERVED,
+                &|p| value.at(p),
+                &mut add,
+            );
             reduced += usize::from(!full);
         }
         reduced
@@ -324,7 +328,14 @@ pub(crate) fn components_of<T: Scalar, Q: Field<T>>(value: &Q) -> [T; MOST_COMPO
 }
 
 /// What the value of a fitted field at a point adds to DOFs: `S` scalars, `C` vectors and `G` tensors, and to `W` mass matrices.
-pub(crate) trait Integrand<T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize, const W: usize>
+pub(crate) trait Integrand<
+    T: Scalar,
+    const D: usize,
+    const S: usize,
+    const C: usize,
+    const G: usize,
+    const W: usize,
+>
 {
     /// The field.
     type Field: Field<T>;

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::grid::Cell;
 use crate::scalar::Scalar;
-use crate::simd::{Packs, each, inlined, in_lanes};
+use crate::simd::{Packs, each, in_lanes, inlined};
 
 /// Particles of one cell that follow each other, at most `N`: one for each lane. Spare lanes repeat the last one.
 #[derive(Clone, Copy)]
@@ -145,9 +145,9 @@ impl<const N: usize> Group<N> {
             |c| k.array(vector[c]),
         );
         let of_lane = inlined(
-        #[inline(always)]
-        |l: usize| SVector::from_fn(|c, _| lanes[c][l]),
-    );
+            #[inline(always)]
+            |l: usize| SVector::from_fn(|c, _| lanes[c][l]),
+        );
         if FULL {
             let all = &mut values[self.first..self.first + N];
             for l in 0..N {

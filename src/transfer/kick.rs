@@ -4,10 +4,10 @@
 
 use nalgebra::SVector;
 
+use super::Sweep;
 use super::cell_sums::CellSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::sums::{Parts, Sum, Sums};
-use super::Sweep;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
 use crate::scalar::Scalar;

@@ -33,7 +33,7 @@ mod rows;
 mod sums;
 
 pub(crate) use drift::{Drift, Outcome, drift};
-pub(crate) use fits::{Fits, components_of, Integrand, MOST_POINTS, MassesAndMomenta, Stress};
+pub(crate) use fits::{Fits, Integrand, MOST_POINTS, MassesAndMomenta, Stress, components_of};
 pub(crate) use group::Group;
 pub(crate) use kick::{Kick, Momentum, kick};
 pub(crate) use p2g::{Contribution, Parts, Sum, p2g};

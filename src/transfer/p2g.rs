@@ -2,11 +2,11 @@
 
 use nalgebra::SVector;
 
+use super::Sweep;
 use super::cell_sums::CellSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
-pub(crate) use super::sums::{Parts, Sum};
 use super::sums::Sums;
-use super::Sweep;
+pub(crate) use super::sums::{Parts, Sum};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
 use crate::scalar::Scalar;
@@ -14,7 +14,9 @@ use crate::simd::{One, Packs, dispatch_for};
 
 /// What particles of a span add to the DOFs: `S` scalars and `C` vectors times the functions, `G` tensors times their
 /// gradients. Fused sweeps are contributions of several quantities.
-pub(crate) trait Contribution<T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize>: Copy {
+pub(crate) trait Contribution<T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize>:
+    Copy
+{
     /// The same of the first so many particles: lengths that a compiler sees to be equal, so that one test of an index does for
     /// all arrays.
     fn cut(self, count: usize) -> Self;
@@ -106,8 +108,8 @@ struct Adding<'a, T, K, V, const D: usize, B, W, F, const S: usize, const C: usi
     sink: F,
 }
 
-impl<T, K, const D: usize, const N: usize, B, W, F, const S: usize, const C: usize, const G: usize> EachGroup<N>
-    for Adding<'_, T, K, K::V, D, B, W, F, S, C, G>
+impl<T, K, const D: usize, const N: usize, B, W, F, const S: usize, const C: usize, const G: usize>
+    EachGroup<N> for Adding<'_, T, K, K::V, D, B, W, F, S, C, G>
 where
     T: Scalar,
     K: Packs<T, N>,

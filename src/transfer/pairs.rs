@@ -50,7 +50,10 @@ pub(crate) fn sum_pairs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
 }
 
 /// Whether [`sum_pairs`] can be used.
-pub(crate) fn sums_apply<T: Scalar, const D: usize, B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>) -> bool {
+pub(crate) fn sums_apply<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    basis: &B,
+    grid: &Grid<T, D>,
+) -> bool {
     Sweep::new(basis, grid).is_in_packs()
 }
 
@@ -197,14 +200,17 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
         for (first, cell) in first.iter_mut().zip(cells) {
             *first = sweep.first_dof(cell);
         }
-        sweep.each_pair(#[inline(always)] |i, j, number| {
-            let sums = k.array(self.sums[number]);
-            for l in 0..cells.len().min(LANES) {
-                if !left_out[l] {
-                    matrix(first[l] + i, first[l] + j, sums[l]);
+        sweep.each_pair(
+            #[inline(always)]
+            |i, j, number| {
+                let sums = k.array(self.sums[number]);
+                for l in 0..cells.len().min(LANES) {
+                    if !left_out[l] {
+                        matrix(first[l] + i, first[l] + j, sums[l]);
+                    }
                 }
-            }
-        });
+            },
+        );
         self.sums[..count].fill(k.splat(T::zero()));
     }
 }
@@ -301,9 +307,15 @@ mod tests {
         };
         sums.add_to::<f64, Linear>(&factors, Four([4.0, 8.0, 12.0, 16.0]));
         let mut entries: Vec<(usize, usize, f64)> = Vec::new();
-        sums.spread(Plain, &sweep, &cells, &[false, true, false, false], &mut |i, j, sum| {
-            entries.push((i, j, sum));
-        });
+        sums.spread(
+            Plain,
+            &sweep,
+            &cells,
+            &[false, true, false, false],
+            &mut |i, j, sum| {
+                entries.push((i, j, sum));
+            },
+        );
         entries.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
         let expected = [
             (0, 0, 1.0),

@@ -44,7 +44,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
 
     /// Products of the factors across the row at `[k1, k2]`.
     #[inline(always)]
-    pub(super) fn across<K: Lanes<T>>(k: K, factors: &Factors<K::V, D>, [k1, k2]: [usize; 2]) -> Across<K::V> {
+    pub(super) fn across<K: Lanes<T>>(
+        k: K,
+        factors: &Factors<K::V, D>,
+        [k1, k2]: [usize; 2],
+    ) -> Across<K::V> {
         let (value, slope) = (&factors.value, &factors.slope);
         let zero = k.splat(T::zero());
         if D == 1 {

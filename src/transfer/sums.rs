@@ -171,13 +171,14 @@ impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Su
             let (offset, _) = sweep.row(row);
             for i in 0..B::WIDTH {
                 let place = row * B::WIDTH + i;
-                let (scalars, vectors, forces) = (self.scalars[place], self.vectors[place], self.forces[place]);
+                let (scalars, vectors, forces) =
+                    (self.scalars[place], self.vectors[place], self.forces[place]);
                 for l in 0..cells.len().min(LANES) {
                     if !left_out[l] {
                         let lane = inlined(
-        #[inline(always)]
-        |pack: V| k.array(pack)[l],
-    );
+                            #[inline(always)]
+                            |pack: V| k.array(pack)[l],
+                        );
                         sink(first[l] + offset + i, sum_of(&scalars, &vectors, &forces, lane));
                     }
                 }
@@ -250,9 +251,9 @@ impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Su
                 (sums[4 * four + 2], sums[4 * four + 3]) = (c, d);
             }
             let vector = inlined(
-        #[inline(always)]
-        |q: usize| SVector::from_fn(|c, _| sums[S + q * D + c]),
-    );
+                #[inline(always)]
+                |q: usize| SVector::from_fn(|c, _| sums[S + q * D + c]),
+            );
             let mut sum = Sum {
                 scalars: [T::zero(); S],
                 vectors: [SVector::zeros(); C],

@@ -35,7 +35,11 @@ pub(super) struct FourFits<T, const D: usize, const NB: usize> {
 
 /// Keeps the lower half.
 #[inline(always)]
-fn keep<T: Scalar, K: Packs<T>, const NB: usize>(k: K, products: &Products<K::V, NB>, kept: &mut KeptProducts<T, NB>) {
+fn keep<T: Scalar, K: Packs<T>, const NB: usize>(
+    k: K,
+    products: &Products<K::V, NB>,
+    kept: &mut KeptProducts<T, NB>,
+) {
     for i in 0..NB {
         for j in 0..=i {
             kept[i][j] = k.array(products[i][j]);
@@ -153,9 +157,9 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
         sums: &KeptSums<'_, T>,
     ) -> Rights<K::V, NB, C> {
         let wants_wide: [bool; LANES] = each(
-                #[inline(always)]
-                |l| !self.own_is_full[l] && self.wide_is_full[l],
-            );
+            #[inline(always)]
+            |l| !self.own_is_full[l] && self.wide_is_full[l],
+        );
         if !wants_wide.contains(&true) {
             return self.own_coefficients(k, &sums.load::<K, NB, C>(k, group), sums.components);
         }
@@ -244,9 +248,9 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
         for axis in 0..D {
             for (side, places) in self.neighbours[axis].iter().enumerate() {
                 let there: [bool; LANES] = each(
-                #[inline(always)]
-                |l| places[l] != NONE,
-            );
+                    #[inline(always)]
+                    |l| places[l] != NONE,
+                );
                 if !there.contains(&true) {
                     continue;
                 }
@@ -314,8 +318,7 @@ fn with_neighbours<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
             if !there.contains(&true) {
                 continue;
             }
-            let at: [usize; LANES] =
-                each(
+            let at: [usize; LANES] = each(
                 #[inline(always)]
                 |l| if places[l] == NONE { 0 } else { places[l] as usize },
             );
@@ -388,11 +391,10 @@ impl<T: Scalar> KeptSums<'_, T> {
     ) -> Rights<K::V, NB, C> {
         let mut rights = [[k.splat(T::zero()); C]; NB];
         let count = NB * self.components;
-        let at: [usize; LANES] =
-            each(
-                #[inline(always)]
-                |l| if places[l] == NONE { 0 } else { places[l] as usize },
-            );
+        let at: [usize; LANES] = each(
+            #[inline(always)]
+            |l| if places[l] == NONE { 0 } else { places[l] as usize },
+        );
         let of: [&[[T; LANES]]; LANES] = each(
             #[inline(always)]
             |l| {

@@ -70,7 +70,8 @@ impl<T: Scalar> Pulls<T> {
         let parallel = worth_sharing::<D>(values.len(), PARTICLES);
         let work = (values, cloud.positions, cloud.bins.cells());
         each_span(parallel, PARTICLES, work, &|_, (values, positions, cells)| {
-            dispatch!(T, |k| self.move_in::<_, Q, D, NB>(k, cloud, values, positions, cells));
+            dispatch!(T, |k| self
+                .move_in::<_, Q, D, NB>(k, cloud, values, positions, cells));
         });
     }
 

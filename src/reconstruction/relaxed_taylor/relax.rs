@@ -28,9 +28,11 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let this = &*self;
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
             if const { are_few::<T, Q, D>() } {
-                dispatch!(T, |k| this.pull_to_both_in::<_, Q, FEW_COMPONENTS>(k, crossed, first, rows));
+                dispatch!(T, |k| this
+                    .pull_to_both_in::<_, Q, FEW_COMPONENTS>(k, crossed, first, rows));
             } else {
-                dispatch!(T, |k| this.pull_to_both_in::<_, Q, MOST_COMPONENTS>(k, crossed, first, rows));
+                dispatch!(T, |k| this
+                    .pull_to_both_in::<_, Q, MOST_COMPONENTS>(k, crossed, first, rows));
             }
         });
         pulls.apply::<Q, D, NB>(cloud, values);
@@ -142,9 +144,13 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let this = &*self;
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
             if const { are_few::<T, Q, D>() } {
-                dispatch!(T, |k| this.pull_to_own_in::<_, Q, FEW_COMPONENTS>(k, cloud, weights, crossed, first, rows, taken));
+                dispatch!(T, |k| this.pull_to_own_in::<_, Q, FEW_COMPONENTS>(
+                    k, cloud, weights, crossed, first, rows, taken
+                ));
             } else {
-                dispatch!(T, |k| this.pull_to_own_in::<_, Q, MOST_COMPONENTS>(k, cloud, weights, crossed, first, rows, taken));
+                dispatch!(T, |k| this.pull_to_own_in::<_, Q, MOST_COMPONENTS>(
+                    k, cloud, weights, crossed, first, rows, taken
+                ));
             }
         });
         pulls.apply::<Q, D, NB>(cloud, values);
@@ -184,7 +190,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             let mut pull: Rights<K::V, NB, C> = [[k.splat(T::zero()); C]; NB];
             let share = k.new(shares);
             for q in 0..Q::COMPONENTS {
-                fits.factor.solve::<T, C>(k.splat(T::zero()), 0, q, &sums.right, &mut pull);
+                fits.factor
+                    .solve::<T, C>(k.splat(T::zero()), 0, q, &sums.right, &mut pull);
                 for function in &mut pull {
                     function[q] = function[q] * share;
                 }

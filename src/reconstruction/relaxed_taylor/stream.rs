@@ -31,9 +31,21 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let this = &*self;
         each_span(self.share_groups(), super::GROUPS, work, &|first, kept| {
             if const { are_few::<T, Q, D>() } {
-                dispatch!(T, |k| this.sums_in::<_, Q, _, FEW_COMPONENTS>(k, cloud, first, value, kept.values));
+                dispatch!(T, |k| this.sums_in::<_, Q, _, FEW_COMPONENTS>(
+                    k,
+                    cloud,
+                    first,
+                    value,
+                    kept.values
+                ));
             } else {
-                dispatch!(T, |k| this.sums_in::<_, Q, _, MOST_COMPONENTS>(k, cloud, first, value, kept.values));
+                dispatch!(T, |k| this.sums_in::<_, Q, _, MOST_COMPONENTS>(
+                    k,
+                    cloud,
+                    first,
+                    value,
+                    kept.values
+                ));
             }
         });
         self.sums = kept;

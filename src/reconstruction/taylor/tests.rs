@@ -32,10 +32,12 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
         mass: 2.0,
         momentum: vector![1.0, 0.0],
     };
-    let four = taylor.integrate_four::<Plain, MassMomentum<f64, 2>>(Plain, &cloud, 0..2, true, &density, |_, _| ());
+    let four =
+        taylor.integrate_four::<Plain, MassMomentum<f64, 2>>(Plain, &cloud, 0..2, true, &density, |_, _| ());
     assert_eq!(four.hard, [false, true, false, false]);
     let momentum = |p: usize| density(p).momentum;
-    let any = taylor.integrate_four::<Plain, SVector<f64, 2>>(Plain, &cloud, 0..2, true, &momentum, |_, _| ());
+    let any =
+        taylor.integrate_four::<Plain, SVector<f64, 2>>(Plain, &cloud, 0..2, true, &momentum, |_, _| ());
     assert_eq!(any.hard, [false; LANES]);
     let (mut least, mut sum) = (f64::INFINITY, 0.0);
     let mut add = |_: &Point<f64, 2>, weighted: MassMomentum<f64, 2>| {

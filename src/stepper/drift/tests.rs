@@ -7,9 +7,9 @@ use super::{Matter, move_particles};
 use crate::basis::{BSpline, BasisFamily, Linear};
 use crate::grid::{Cell, Grid};
 use crate::law::{ConstitutiveLaw, Hill, LinearElastic, Moduli, NeoHookean};
+use crate::parallel::Sliced;
 use crate::particles::{Bins, Particles, settle};
 use crate::phase::OnePhase;
-use crate::parallel::Sliced;
 use crate::tensor::determinant;
 use crate::transfer::{Drift, drift};
 
@@ -123,7 +123,13 @@ impl<const D: usize, S: Copy + Default + PartialEq + std::fmt::Debug> Body<D, S>
         let mut spans = Spans::new(self.particles.len());
         let mut bins = Bins::of_cells(self.cells.clone());
         let space = (basis, &self.grid, &mut bins);
-        move_particles(space, &mut self.particles, &Matter { law, phase }, &motion, &mut spans);
+        move_particles(
+            space,
+            &mut self.particles,
+            &Matter { law, phase },
+            &motion,
+            &mut spans,
+        );
         self.cells = bins.cells().to_vec();
         (spans.moved[0], spans.bounds[0])
     }

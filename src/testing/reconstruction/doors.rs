@@ -4,9 +4,9 @@
 use nalgebra::SVector;
 
 use super::stream::{Streamed, collect, largest_response, relative_error, uneven};
-use crate::simd::{LANES, Plain};
 use crate::reconstruction::{Cloud, Point, Reconstruction};
 use crate::scalar::Scalar;
+use crate::simd::{LANES, Plain};
 use crate::testing::failure::{Failure, Place, Property, near};
 
 pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
