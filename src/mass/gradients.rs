@@ -41,6 +41,7 @@ pub struct ConjugateGradients<T, const D: usize> {
 
 impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
     /// For matrices of the DOFs of `basis` on `grid`.
+    #[inline(never)]
     pub fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>) -> Self {
         Self::with(AxisMasses::new(basis, grid), basis.dof_count(grid))
     }
@@ -85,6 +86,7 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
     }
 
     /// Takes in a matrix and a penalty to be added to it.
+    #[inline(never)]
     pub fn prepare(&mut self, matrix: &Lattice<T>, penalty: &Penalty<T, D>) {
         matrix.row_sums(&mut self.sums);
         self.diagonal.copy_from_slice(matrix.diagonal());

@@ -30,6 +30,7 @@ const NONE: u16 = u16::MAX;
 
 impl<T: Scalar> Lattice<T> {
     /// The zero matrix for a lattice with `shape` DOFs along its axes, axis 0 fastest.
+    #[inline(never)]
     pub fn zeros<const D: usize>(shape: [usize; D], reach: usize) -> Self {
         let offsets = offsets(shape, reach);
         let order = shape.iter().product();

@@ -43,6 +43,7 @@ struct Form<T> {
 
 impl<T: Scalar, const D: usize> Penalty<T, D> {
     /// For the DOFs of `basis` in the grid's window.
+    #[inline(never)]
     pub fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>) -> Self {
         let shape = basis.dofs(grid);
         let jumps: [AxisJumps<T>; D] = std::array::from_fn(|axis| AxisJumps::new(basis, grid, axis));

@@ -35,6 +35,7 @@ impl<const D: usize> Bins<D> {
     }
 
     /// Cells of `positions` alone; the lists take no memory, and are empty, until [`Bins::list`].
+    #[inline(never)]
     pub(crate) fn without_lists<T: Scalar>(
         grid: &Grid<T, D>,
         positions: &[SVector<T, D>],
@@ -68,6 +69,7 @@ impl<const D: usize> Bins<D> {
     ///
     /// # Errors
     /// [`Outside`] names the first particle that is not in the grid.
+    #[inline(never)]
     pub fn locate<T: Scalar>(
         &mut self,
         grid: &Grid<T, D>,
@@ -104,6 +106,7 @@ impl<const D: usize> Bins<D> {
     }
 
     /// Brings the lists per cell up to date (a counting sort, only after a particle changed its cell).
+    #[inline(never)]
     pub fn list<T: Scalar>(&mut self, grid: &Grid<T, D>) {
         if !self.lists_are_stale {
             return;

@@ -1,51 +1,49 @@
-//! Stage 2: accelerations of the DOFs.
+//! Accelerations of the DOFs from the forces on them.
 
-use super::matrix::Unknown;
-use super::{FaceCondition, Forcing, PoreCondition, Stepper};
-use crate::basis::BasisFamily;
-use crate::grid::Face;
-use crate::law::LawSweep;
-use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
-use crate::scalar::Scalar;
-use crate::simd::with_features;
 use nalgebra::SVector;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
-where
-    T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
-    L: LawSweep<T, D>,
-    P: Phase<T, D>,
-{
-    /// Turns forces into accelerations; a DOF that no particle reaches has none.
-    pub(super) fn accelerate_one(&mut self, forcing: &Forcing<T, D>) {
-        if R::PARTICLE_MATRIX {
-            self.solve_accelerations(forcing);
-        } else {
-            let (forces, masses, body_force) =
-                (&mut self.dofs.force[..], &self.dofs.mass[..], forcing.body_force);
-            with_features(
-                #[inline(always)]
-                move || divide_by_masses(forces, masses, body_force),
-            );
-        }
-        self.hold_accelerations(forcing);
-    }
+use super::balance::Balance;
+use super::dofs::{Dofs, MassModel};
+use super::matrix::Unknown;
+use super::{FaceCondition, Forcing, PoreCondition};
+use crate::grid::Face;
+use crate::scalar::Scalar;
+use crate::simd::with_features;
 
-    /// `M a = f + m b` with the particles' matrix.
-    fn solve_accelerations(&mut self, forcing: &Forcing<T, D>) {
-        for (force, &mass) in self.dofs.force.iter_mut().zip(&self.dofs.mass) {
-            *force += forcing.body_force * mass;
+/// Turns forces into accelerations; a DOF that no particle reaches has none. Held components get the prescribed ones, and the
+/// forces that this takes are noted.
+#[inline(never)]
+pub(super) fn accelerate<T: Scalar, const D: usize>(
+    dofs: &mut Dofs<T, D>,
+    mass: MassModel,
+    walls: &Walls<'_, T, D>,
+    balance: &mut Balance<T, D>,
+) {
+    let body_force = walls.forcing.body_force;
+    if mass == MassModel::ParticleMatrix {
+        for (force, &mass) in dofs.force.iter_mut().zip(&dofs.mass) {
+            *force += body_force * mass;
         }
-        self.note_loads_on_held(forcing);
+        balance.note_loads_on_held(&dofs.force, walls);
         let pick = |_, acceleration| acceleration;
-        let walls = Walls::of_solid(&self.face_dofs, forcing);
-        self.dofs
-            .solve(Unknown::Acceleration, self.velocity_mass, &walls, true, &pick);
-        self.note_inertia_of_held(forcing);
+        dofs.solve(Unknown::Acceleration, mass, walls, true, &pick);
+        balance.note_inertia_of_held(dofs, walls);
+    } else {
+        let (forces, masses) = (&mut dofs.force[..], &dofs.mass[..]);
+        with_features(
+            #[inline(always)]
+            move || divide_by_masses(forces, masses, body_force),
+        );
     }
+    let is_lumped = mass != MassModel::ParticleMatrix;
+    // One after another: where faces meet, the later one finds what the earlier one has prescribed.
+    walls.for_each_held(|dof, axis, _, acceleration| {
+        let force = &mut dofs.force[dof][axis];
+        if is_lumped {
+            balance.reaction[axis] += (acceleration - *force) * dofs.mass[dof];
+        }
+        *force = acceleration;
+    });
 }
 
 /// Forces to accelerations with lumped masses.

@@ -3,11 +3,8 @@
 use nalgebra::SVector;
 
 use super::acceleration::Walls;
-use super::{Forcing, Stepper};
-use crate::basis::BasisFamily;
-use crate::law::LawSweep;
-use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
+use super::diagnostics::Diagnostics;
+use super::dofs::Dofs;
 use crate::scalar::Scalar;
 use crate::transfer::Momentum;
 
@@ -34,89 +31,57 @@ impl<T: Scalar, const D: usize> Balance<T, D> {
         }
     }
 
-    /// No force yet in this step.
-    pub(super) fn begin(&mut self) {
+    /// No force yet in this step. The particles' momentum is summed before the first step; later it is known from the step before.
+    pub(super) fn begin(&mut self, velocities: &[SVector<T, D>], masses: &[T]) {
         *self = Self {
             momentum: self.momentum,
             ..Self::none()
         };
-    }
-}
-
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
-where
-    T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
-    L: LawSweep<T, D>,
-    P: Phase<T, D>,
-{
-    /// Sums the particles' momentum before the first step; later it is known from the step before.
-    pub(super) fn begin_balance(&mut self) {
-        if P::FLOWS {
-            return;
-        }
-        self.balance.begin();
-        if self.balance.momentum.is_none() {
-            let particles = self.particles.velocity.iter().zip(&self.particles.mass);
-            self.balance.momentum = Some(particles.fold(SVector::zeros(), |sum, (v, &m)| sum + v * m));
+        if self.momentum.is_none() {
+            let particles = velocities.iter().zip(masses);
+            self.momentum = Some(particles.fold(SVector::zeros(), |sum, (v, &m)| sum + v * m));
         }
     }
 
     /// Compares the change of momentum with the impulses of loads and held faces.
-    pub(super) fn balance_momentum(&mut self, dt: T, forcing: &Forcing<T, D>, after: &Momentum<T, D>) {
-        if P::FLOWS {
-            return;
-        }
-        let Balance {
-            momentum,
-            load,
-            reaction,
-            unknown,
-        } = self.balance;
-        let weight = forcing.body_force * self.diagnostics.total_mass;
-        let impulses = [weight * dt, load * dt, reaction * dt];
-        let change = after.momentum - momentum.unwrap_or_else(SVector::zeros);
+    #[inline(never)]
+    pub(super) fn close(
+        &mut self,
+        dt: T,
+        body_force: &SVector<T, D>,
+        after: &Momentum<T, D>,
+        diagnostics: &mut Diagnostics<T>,
+    ) {
+        let weight = body_force * diagnostics.total_mass;
+        let impulses = [weight * dt, self.load * dt, self.reaction * dt];
+        let change = after.momentum - self.momentum.unwrap_or_else(SVector::zeros);
         let mut difference = impulses.iter().fold(change, |left, impulse| left - impulse);
-        for axis in (0..D).filter(|&axis| unknown[axis]) {
+        for axis in (0..D).filter(|&axis| self.unknown[axis]) {
             difference[axis] = T::zero();
         }
         let scale = impulses
             .iter()
             .fold(after.scale, |sum, impulse| sum + impulse.norm());
-        self.diagnostics.record_impulse(difference.norm(), scale);
-        self.balance.momentum = Some(after.momentum);
-    }
-
-    /// Prescribes the accelerations of held components and notes the forces that this takes, where masses are lumped.
-    pub(super) fn hold_accelerations(&mut self, forcing: &Forcing<T, D>) {
-        let (force, masses, balance) = (&mut self.dofs.force, &self.dofs.mass, &mut self.balance);
-        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, acceleration| {
-            if !R::PARTICLE_MATRIX {
-                balance.reaction[axis] += (acceleration - force[dof][axis]) * masses[dof];
-            }
-            force[dof][axis] = acceleration;
-        });
+        diagnostics.record_impulse(difference.norm(), scale);
+        self.momentum = Some(after.momentum);
     }
 
     /// Notes what `f + m b` gives to held components before accelerations are solved for with the particles' matrix.
-    pub(super) fn note_loads_on_held(&mut self, forcing: &Forcing<T, D>) {
-        let (right, balance) = (&self.dofs.force, &mut self.balance);
-        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, _| {
+    pub(super) fn note_loads_on_held(&mut self, right: &[SVector<T, D>], walls: &Walls<'_, T, D>) {
+        walls.for_each_held(|dof, axis, _, _| {
             // Beyond one axis a row of the matrix costs as much as a product with all of it.
-            balance.unknown[axis] = D > 1;
-            balance.reaction[axis] -= right[dof][axis];
+            self.unknown[axis] = D > 1;
+            self.reaction[axis] -= right[dof][axis];
         });
     }
 
     /// Adds what the matrix makes of the accelerations there.
-    pub(super) fn note_inertia_of_held(&mut self, forcing: &Forcing<T, D>) {
+    pub(super) fn note_inertia_of_held(&mut self, dofs: &Dofs<T, D>, walls: &Walls<'_, T, D>) {
         if D > 1 {
             return;
         }
-        let (dofs, balance) = (&self.dofs, &mut self.balance);
-        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, _| {
-            balance.reaction[axis] += dofs.matrix.band().row_product(dof, axis, &dofs.force);
+        walls.for_each_held(|dof, axis, _, _| {
+            self.reaction[axis] += dofs.matrix.band().row_product(dof, axis, &dofs.force);
         });
     }
 }

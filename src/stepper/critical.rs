@@ -2,9 +2,11 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::acceleration::{Walls, accelerate};
 use super::fitted::Fitted;
 use super::liquid::Coupled;
 use super::sums::Targets;
+use super::velocity::divide_by_mass;
 use super::{FaceCondition, Forcing, Setup, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Face};
@@ -216,7 +218,8 @@ where
     /// Replaces the velocities `v` by `G v` and returns `|G v| / |v|`, `|v| = size`.
     fn apply(&mut self, rest: &Forcing<T, D>, size: T) -> Option<T> {
         self.map_solid();
-        self.divide_by_mass(rest, true);
+        let walls = Walls::of_solid(&self.face_dofs, rest);
+        divide_by_mass(&mut self.dofs, self.mass, &walls, true);
         let mut rates = vec![SMatrix::zeros(); self.particles.len()];
         let parallel = rates.len() > PARTICLES && many_threads();
         each_span(parallel, PARTICLES, &mut rates[..], &|first, rates: &mut [_]| {
@@ -235,7 +238,8 @@ where
         };
         let force = Targets::<T, D, 0, 0, 1>::of_forces([&mut self.dofs.force]);
         fitted.forces::<1>(Stored(&rates), force);
-        self.accelerate_one(rest);
+        let walls = Walls::of_solid(&self.face_dofs, rest);
+        accelerate(&mut self.dofs, self.mass, &walls, &mut self.balance);
         self.particles.velocity.fill(SVector::zeros());
         self.kick_phases::<1, 0>(-T::one());
         let eigenvalue = rms(&self.particles.velocity) / size;

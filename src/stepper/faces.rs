@@ -13,6 +13,7 @@ use crate::scalar::Scalar;
 
 /// Of each face, in the order of [`Face::all`], the DOFs that a wall holds, and one that has a value there
 /// all the same.
+#[inline(never)]
 pub(super) fn face_dofs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,

@@ -2,11 +2,11 @@
 
 use nalgebra::SVector;
 
-use super::Dofs;
 use super::acceleration::Walls;
+use super::dofs::{Dofs, MassModel};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
-use crate::mass::{Banded, ConjugateGradients, Lattice, Penalty, VelocityMass};
+use crate::mass::{Banded, ConjugateGradients, Lattice, Penalty};
 use crate::scalar::Scalar;
 
 /// What is solved for, in place.
@@ -42,6 +42,7 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
     }
 
     /// Of the DOFs of `basis`, which may be tied where material ends.
+    #[inline(never)]
     pub(super) fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>, ties: bool) -> Self {
         let none = Self::none();
         if D == 1 {
@@ -114,6 +115,7 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
 
     /// Takes the sums as complete. In one dimension rows whose diagonal holds less than the share `weak` of their sum are
     /// lumped, if told so.
+    #[inline(never)]
     pub(super) fn complete(&mut self, weak: Option<T>) {
         if D > 1 {
             self.gradients.prepare(&self.lattice, &self.penalty);
@@ -147,7 +149,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
     pub(super) fn solve(
         &mut self,
         unknown: Unknown,
-        mass: VelocityMass,
+        mass: MassModel,
         walls: &Walls<'_, T, D>,
         fresh: bool,
         pick: &dyn Fn(T, T) -> T,
@@ -160,7 +162,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             Unknown::Velocity => &mut self.velocity,
         };
         let MassMatrix { band, factor, .. } = &mut self.matrix;
-        if mass != VelocityMass::Constrained {
+        if !mass.is_constrained() {
             if fresh {
                 factor.copy_from(band);
                 factor.factorise_and_solve(right, 0);
@@ -191,7 +193,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
     fn iterate(
         &mut self,
         unknown: Unknown,
-        mass: VelocityMass,
+        mass: MassModel,
         walls: &Walls<'_, T, D>,
         pick: &dyn Fn(T, T) -> T,
     ) {
@@ -206,7 +208,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             ..
         } = &mut self.matrix;
         gradients.release();
-        if mass == VelocityMass::Constrained {
+        if mass.is_constrained() {
             walls.for_each_held(|dof, axis, velocity, acceleration| {
                 gradients.hold(dof, axis);
                 right[dof][axis] = pick(velocity, acceleration);

@@ -66,7 +66,7 @@ use crate::reconstruction::{Cloud, Crossed, Cut, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::packs_serve;
 use crate::transfer;
-use dofs::Dofs;
+use dofs::{Dofs, MassModel};
 use order::Order;
 use pairs::Pairs;
 use spans::{SCALARS, Spans, VECTORS};
@@ -142,7 +142,9 @@ where
     face_dofs: Vec<Vec<u32>>,
     /// Of each a DOF that has a value there and is not among them.
     left_out: Vec<Option<usize>>,
+    /// As the setup said it.
     velocity_mass: VelocityMass,
+    mass: MassModel,
     time: T,
     steps: usize,
     diagnostics: Diagnostics<T>,
@@ -204,12 +206,7 @@ where
             false => grid,
         };
         let order = Order::new(&grid, bins.cells());
-        // Overwritten walls would tear at an acceleration that knows nothing of them.
-        let velocity_mass = match R::PARTICLE_MATRIX {
-            true => VelocityMass::Constrained,
-            false => velocity_mass,
-        };
-        let sums_matrix = D > 1 && !R::AMOUNTS_AT_PARTICLES && velocity_mass != VelocityMass::Lumped;
+        let mass_model = MassModel::of::<T, D, R>(velocity_mass);
         let surface_count = surface.len();
         let crossed_count = if R::RELAXES { grid.cell_count() } else { 0 };
         let relaxed_count = if R::RELAXES && law.remembers() {
@@ -247,11 +244,12 @@ where
             relaxed: vec![SMatrix::zeros(); relaxed_count],
             balance: balance::Balance::none(),
             contact: contact::WallContact::none(),
-            pairs: Pairs::new(R::PARTICLE_MATRIX || sums_matrix),
+            pairs: Pairs::new(R::PARTICLE_MATRIX),
             body_forces: Vec::new(),
             face_dofs: Vec::new(),
             left_out: Vec::new(),
             velocity_mass,
+            mass: mass_model,
             time: T::zero(),
             steps: 0,
             diagnostics: Diagnostics::new(mass, P::FLOWS),
@@ -268,10 +266,9 @@ where
     fn allocate_dofs(&mut self) {
         self.contact.forget();
         let (basis, grid) = (&self.basis, &self.grid);
-        let own_mass = (!R::AMOUNTS_AT_PARTICLES || R::PARTICLE_MATRIX).then_some(self.velocity_mass);
-        self.dofs = Dofs::new(basis, grid, own_mass, R::PARTICLE_MATRIX);
+        self.dofs = Dofs::new(basis, grid, self.mass);
         if P::FLOWS {
-            self.liquid = Dofs::new(basis, grid, own_mass, R::PARTICLE_MATRIX);
+            self.liquid = Dofs::new(basis, grid, self.mass);
             let count = basis.dof_count(grid);
             self.drag = vec![T::zero(); count];
             if R::PARTICLE_MATRIX {

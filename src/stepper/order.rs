@@ -31,6 +31,7 @@ pub(super) struct Order {
 
 impl Order {
     /// For particles in the given cells; allocates what ordering them will need.
+    #[inline(never)]
     pub(super) fn new<T: Scalar, const D: usize>(grid: &Grid<T, D>, cells: &[Cell<D>]) -> Self {
         let backward = cells.windows(2).filter(|pair| before(grid, &pair[1], &pair[0]));
         if D == 1 && backward.count() * BACKWARD <= cells.len() {

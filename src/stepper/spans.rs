@@ -138,6 +138,7 @@ impl<T: Scalar> Flaw<T> {
 }
 
 impl<T: Scalar, const D: usize> Spans<T, D> {
+    #[inline(never)]
     pub(super) fn new(particles: usize) -> Self {
         let spans = particles.div_ceil(PARTICLES);
         Self {
@@ -160,6 +161,7 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
     }
 
     /// Windows for where the particles are now; `fits` says whether cells are passed over too.
+    #[inline(never)]
     pub(super) fn refresh<B: BasisFamily<T, D>>(
         &mut self,
         basis: &B,
@@ -203,6 +205,7 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
 
     /// Allocates what sweeps will need: so many scalars and vectors of each DOF, summed over particles and, for fits, over
     /// cells.
+    #[inline(never)]
     pub(super) fn allocate(&mut self, [scalars, vectors]: [usize; 2], fits: bool, dofs: usize) {
         let Store {
             scalars: of_scalars,

@@ -3,8 +3,8 @@
 //! Every method, phase and dimension takes the stages of this list and no other way; a stage that has nothing to do for a type
 //! compiles to nothing. What each stage does is in the file of its name.
 
-use nalgebra::SVector;
-
+use super::acceleration::{Walls, accelerate};
+use super::dofs::MassModel;
 use super::drift::{Matter, move_particles};
 use super::fitted::{DensitiesOfBoth, Fitted, StressAndPressure, densities};
 use super::forcing::Forcing;
@@ -12,13 +12,12 @@ use super::kick::kick_particles;
 use super::liquid::EvenLoad;
 use super::spans::{Fault, Totals};
 use super::sums::{Targets, first, sum_particles};
-use super::velocity::sum;
+use super::velocity::divide_by_mass;
 use super::{Energy, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::field::MassMomentum;
 use crate::law::LawSweep;
-use crate::mass::VelocityMass;
 use crate::phase::Phase;
 use crate::reconstruction::{Reconstruction, Stored};
 use crate::scalar::Scalar;
@@ -53,7 +52,9 @@ where
 
     /// Velocities of particles and DOFs.
     fn kick(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        self.begin_balance();
+        if const { !P::FLOWS } {
+            self.balance.begin(&self.particles.velocity, &self.particles.mass);
+        }
         self.p2g(dt, forcing);
         self.add_loads(forcing);
         self.accelerate(dt, forcing);
@@ -61,7 +62,11 @@ where
         self.filter(dt);
         let mapped = self.map_momenta();
         self.record(&totals, mapped);
-        self.balance_momentum(dt, forcing, &totals.momenta[0]);
+        if const { !P::FLOWS } {
+            let after = &totals.momenta[0];
+            self.balance
+                .close(dt, &forcing.body_force, after, &mut self.diagnostics);
+        }
         self.solve_velocities(dt, forcing);
         self.meet_walls(forcing);
     }
@@ -192,7 +197,8 @@ where
         if const { P::FLOWS } {
             self.accelerate_both(dt, forcing);
         } else {
-            self.accelerate_one(forcing);
+            let walls = Walls::of_solid(&self.face_dofs, forcing);
+            accelerate(&mut self.dofs, self.mass, &walls, &mut self.balance);
         }
     }
 
@@ -274,7 +280,7 @@ where
 
     /// Momenta of the DOFs from fits of densities and, if `masses`, what divides them.
     pub(super) fn fit_momenta(&mut self, masses: bool) {
-        let lumped = self.velocity_mass == VelocityMass::Lumped;
+        let lumped = self.mass == MassModel::FittedLumped;
         let by_four = self.by_four();
         let fitted = Fitted {
             basis: &self.basis,
@@ -310,15 +316,7 @@ where
 
     /// Total mass and momentum of the DOFs, of both phases.
     fn mapped_totals(&self) -> [MassMomentum<T, D>; 2] {
-        let lumped = self.velocity_mass == VelocityMass::Lumped;
-        [&self.dofs, &self.liquid].map(|dofs| MassMomentum {
-            mass: match (R::PARTICLE_MATRIX, R::AMOUNTS_AT_PARTICLES, lumped) {
-                (true, _, _) | (false, false, false) => dofs.matrix.total(),
-                (false, true, _) => sum(&dofs.mass),
-                (false, false, true) => sum(&dofs.lumped),
-            },
-            momentum: sum::<SVector<T, D>>(&dofs.velocity),
-        })
+        [&self.dofs, &self.liquid].map(|dofs| dofs.mapped_totals(self.mass))
     }
 
     /// Compares what was mapped with what the particles have.
@@ -331,8 +329,9 @@ where
         if const { P::FLOWS } {
             self.divide_both(dt, forcing, false);
         } else {
+            let walls = Walls::of_solid(&self.face_dofs, forcing);
             // The particles' matrix is the one that the accelerations were solved with.
-            self.divide_by_mass(forcing, !R::PARTICLE_MATRIX);
+            divide_by_mass(&mut self.dofs, self.mass, &walls, !R::PARTICLE_MATRIX);
         }
     }
 }

@@ -4,50 +4,39 @@ use nalgebra::SVector;
 use num_traits::Zero;
 
 use super::acceleration::Walls;
+use super::dofs::{Dofs, MassModel};
 use super::matrix::Unknown;
-use super::{Forcing, Stepper};
-use crate::basis::BasisFamily;
-use crate::law::LawSweep;
-use crate::mass::VelocityMass;
-use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::simd::with_features;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
-where
-    T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
-    L: LawSweep<T, D>,
-    P: Phase<T, D>,
-{
-    /// Momentum to velocity, with the told values at held DOFs. DOFs without mass are at rest. Without `fresh` matrix and
-    /// held DOFs are those last solved with.
-    pub(super) fn divide_by_mass(&mut self, forcing: &Forcing<T, D>, fresh: bool) {
-        let own_lumped = !R::AMOUNTS_AT_PARTICLES && self.velocity_mass == VelocityMass::Lumped;
-        if own_lumped || R::AMOUNTS_AT_PARTICLES && !R::PARTICLE_MATRIX {
-            self.divide_by_lumped_mass();
-        } else {
-            let pick = |velocity, _| velocity;
-            let walls = Walls::of_solid(&self.face_dofs, forcing);
-            self.dofs
-                .solve(Unknown::Velocity, self.velocity_mass, &walls, fresh, &pick);
-        }
-        let velocities = &mut self.dofs.velocity;
-        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, velocity, _| {
-            velocities[dof][axis] = velocity;
-        });
-    }
+/// Momentum to velocity, with the prescribed values at held DOFs. DOFs without mass are at rest. Without `fresh` matrix and
+/// held DOFs are those last solved with.
+#[inline(never)]
+pub(super) fn divide_by_mass<T: Scalar, const D: usize>(
+    dofs: &mut Dofs<T, D>,
+    mass: MassModel,
+    walls: &Walls<'_, T, D>,
+    fresh: bool,
+) {
+    undo_mass(dofs, mass, walls, fresh);
+    walls.for_each_held(|dof, axis, velocity, _| dofs.velocity[dof][axis] = velocity);
+}
 
-    fn divide_by_lumped_mass(&mut self) {
-        let dofs = &mut self.dofs;
-        let mass = if R::AMOUNTS_AT_PARTICLES {
-            &dofs.mass
-        } else {
-            &dofs.lumped
-        };
-        divide(&mut dofs.velocity, mass);
+/// The same without the prescribed values, unless the matrix is constrained by them.
+#[inline(never)]
+pub(super) fn undo_mass<T: Scalar, const D: usize>(
+    dofs: &mut Dofs<T, D>,
+    mass: MassModel,
+    walls: &Walls<'_, T, D>,
+    fresh: bool,
+) {
+    match mass {
+        MassModel::Particles => divide(&mut dofs.velocity, &dofs.mass),
+        MassModel::FittedLumped => divide(&mut dofs.velocity, &dofs.lumped),
+        MassModel::FittedMatrix { .. } | MassModel::ParticleMatrix => {
+            let pick = |velocity, _| velocity;
+            dofs.solve(Unknown::Velocity, mass, walls, fresh, &pick);
+        }
     }
 }
 

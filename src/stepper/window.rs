@@ -18,6 +18,7 @@ const MARGIN: usize = 3;
 const PART: usize = 8;
 
 /// The grid with a window around the particles' `cells`, or without where that would not spare half of it.
+#[inline(never)]
 pub(super) fn lay<T: Scalar, const D: usize>(grid: Grid<T, D>, cells: &[Cell<D>]) -> Grid<T, D> {
     let around = Window::around(cells).widened(|cells| MARGIN + cells / PART);
     let all = grid.cells();

@@ -17,6 +17,7 @@ use crate::scalar::Scalar;
 use crate::stepper::acceleration::Walls;
 use crate::stepper::critical::at_rest;
 use crate::stepper::matrix::Unknown;
+use crate::stepper::velocity::{divide, divide_by_mass};
 use crate::stepper::{Forcing, Stepper};
 
 /// Share of the walls' greatest relative velocity within which the contact law is to hold.
@@ -128,9 +129,9 @@ where
         if R::PARTICLE_MATRIX {
             let pick = |_, acceleration| acceleration;
             self.dofs
-                .solve(Unknown::Acceleration, self.velocity_mass, &walls, true, &pick);
+                .solve(Unknown::Acceleration, self.mass, &walls, true, &pick);
         } else {
-            super::super::velocity::divide(force, &self.dofs.mass);
+            divide(force, &self.dofs.mass);
         }
         let force = &mut self.dofs.force;
         walls.for_each_held(|dof, axis, _, _| force[dof][axis] = T::zero());
@@ -139,7 +140,8 @@ where
         self.kick_particles(T::one());
         self.map_momenta();
         // The particles' matrix is the one that the accelerations were solved with.
-        self.divide_by_mass(rest, !R::PARTICLE_MATRIX);
+        let walls = Walls::of_solid(&self.face_dofs, rest);
+        divide_by_mass(&mut self.dofs, self.mass, &walls, !R::PARTICLE_MATRIX);
         std::mem::swap(&mut self.particles.velocity, &mut self.contact.kicks);
     }
 

@@ -1,12 +1,10 @@
 //! Velocities of the DOFs of both phases from their momenta.
 
 use super::super::acceleration::Walls;
-use super::super::matrix::Unknown;
-use super::super::velocity::divide;
+use super::super::velocity::undo_mass;
 use super::super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::law::LawSweep;
-use crate::mass::VelocityMass;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -35,16 +33,7 @@ where
             Walls::of_liquid(&self.face_dofs, forcing),
         ];
         for (dofs, walls) in [&mut self.dofs, &mut self.liquid].into_iter().zip(walls) {
-            let mass = self.velocity_mass;
-            if R::PARTICLE_MATRIX {
-                dofs.solve(Unknown::Velocity, mass, &walls, fresh, &|velocity, _| velocity);
-            } else if R::AMOUNTS_AT_PARTICLES {
-                divide(&mut dofs.velocity, &dofs.mass);
-            } else if mass == VelocityMass::Lumped {
-                divide(&mut dofs.velocity, &dofs.lumped);
-            } else {
-                dofs.solve(Unknown::Velocity, mass, &walls, fresh, &|velocity, _| velocity);
-            }
+            undo_mass(dofs, self.mass, &walls, fresh);
         }
         self.hold_velocities(dt, forcing);
         if R::PARTICLE_MATRIX {
