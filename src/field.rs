@@ -73,6 +73,74 @@ impl<T: Scalar, const R: usize, const C: usize> Field<T> for SMatrix<T, R, C> {
     }
 }
 
+/// A symmetric tensor as a field: the entries on the diagonal and those above it, no other is fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Symmetric<T: Scalar, const D: usize>(pub SMatrix<T, D, D>);
+
+/// Number of the component at `(row, column)` of a symmetric tensor: the diagonal first, then the rows above it.
+#[inline(always)]
+pub(crate) const fn symmetric_component<const D: usize>(row: usize, column: usize) -> usize {
+    if row == column {
+        row
+    } else if D == 3 {
+        row + column + 2
+    } else {
+        D
+    }
+}
+
+/// The place of a component.
+#[inline(always)]
+const fn symmetric_place<const D: usize>(component: usize) -> (usize, usize) {
+    match (component < D, component - if component < D { 0 } else { D }) {
+        (true, axis) => (axis, axis),
+        (false, 0) => (0, 1),
+        (false, 1) => (0, 2),
+        (false, _) => (1, 2),
+    }
+}
+
+impl<T: Scalar, const D: usize> Add for Symmetric<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl<T: Scalar, const D: usize> Zero for Symmetric<T, D> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self(SMatrix::zeros())
+    }
+
+    fn is_zero(&self) -> bool {
+        self.0.is_zero()
+    }
+}
+
+impl<T: Scalar, const D: usize> Field<T> for Symmetric<T, D> {
+    const COMPONENTS: usize = D * (D + 1) / 2;
+
+    #[inline(always)]
+    fn component(&self, i: usize) -> T {
+        self.0[symmetric_place::<D>(i)]
+    }
+
+    #[inline(always)]
+    fn set_component(&mut self, i: usize, value: T) {
+        let (row, column) = symmetric_place::<D>(i);
+        self.0[(row, column)] = value;
+        self.0[(column, row)] = value;
+    }
+
+    #[inline(always)]
+    fn add_scaled(&mut self, weight: T, other: Self) {
+        self.0 += other.0 * weight;
+    }
+}
+
 /// Two fields mapped together: one pass, one fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair<A, B>(pub A, pub B);

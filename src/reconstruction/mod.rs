@@ -19,7 +19,7 @@ pub use shepard::Shepard;
 pub use spline::CubicSpline;
 pub use sub_points::SubPoints;
 pub use taylor::Taylor;
-pub use values::{Densities, Stored, Values};
+pub use values::{Densities, Stored, Stresses, Values};
 
 use std::ops::Range;
 

@@ -1,8 +1,8 @@
 //! Values at the particles.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
-use crate::field::{Field, MassMomentum};
+use crate::field::{Field, MassMomentum, Symmetric};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each, in_lanes};
 
@@ -52,6 +52,37 @@ impl<T: Scalar, Q: Field<T>> Values<T, Q> for Stored<'_, Q> {
                     k.new(in_lanes(
                         #[inline(always)]
                         |l| four[l].component(q),
+                    ))
+                },
+            );
+        }
+        components
+    }
+}
+
+/// Symmetric tensors that lie end to end in memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Stresses<'a, T, const D: usize>(pub &'a [SMatrix<T, D, D>]);
+
+impl<T: Scalar, const D: usize> Values<T, Symmetric<T, D>> for Stresses<'_, T, D> {
+    #[inline(always)]
+    fn at(&self, particle: usize) -> Symmetric<T, D> {
+        Symmetric(self.0[particle])
+    }
+
+    #[inline(always)]
+    fn four<K: Packs<T>, const C: usize>(&self, k: K, first: usize) -> [K::V; C] {
+        let mut components = [k.splat(T::zero()); C];
+        for q in 0..Symmetric::<T, D>::COMPONENTS.min(C) {
+            components[q] = four_of(
+                self.0,
+                first,
+                components[q],
+                #[inline(always)]
+                |four| {
+                    k.new(in_lanes(
+                        #[inline(always)]
+                        |l| Symmetric(four[l]).component(q),
                     ))
                 },
             );

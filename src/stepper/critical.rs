@@ -13,7 +13,7 @@ use crate::grid::{Cell, Face};
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, each_span, many_threads};
 use crate::phase::{Drag, Phase};
-use crate::reconstruction::{Reconstruction, Stored};
+use crate::reconstruction::{Reconstruction, Stresses};
 use crate::scalar::Scalar;
 use crate::tensor::symmetric;
 
@@ -237,7 +237,7 @@ where
             by_four,
         };
         let force = Targets::<T, D, 0, 0, 1>::of_forces([&mut self.dofs.force]);
-        fitted.forces::<1>(Stored(&rates), force);
+        fitted.forces::<1>(Stresses(&rates), force);
         let walls = Walls::of_solid(&self.face_dofs, rest);
         accelerate(&mut self.dofs, self.mass, &walls, &mut self.balance);
         self.particles.velocity.fill(SVector::zeros());

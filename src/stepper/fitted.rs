@@ -3,14 +3,14 @@
 //! Cells are fitted and integrated four at a time where reconstruction and basis can ([`transfer::fit`]), else streamed
 //! point by point: cell by cell where threads may share them, in one go otherwise.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use super::Dofs;
 use super::matrix::MassMatrix;
 use super::spans::{Spans, share};
 use super::sums::{InSpan, Targets};
 use crate::basis::BasisFamily;
-use crate::field::{Field, MassMomentum, Pair};
+use crate::field::{Field, MassMomentum, Pair, Symmetric};
 use crate::mass::banded_row;
 use crate::parallel::{PerSpan, Windows, add_up, each_span};
 use crate::particles::Particles;
@@ -384,4 +384,4 @@ impl<T: Scalar, const D: usize, P: Phase<T, D>> Values<T, Both<T, D>> for Densit
 }
 
 /// Total stress and pressure, each less an even load.
-pub(super) type StressAndPressure<T, const D: usize> = Pair<SMatrix<T, D, D>, T>;
+pub(super) type StressAndPressure<T, const D: usize> = Pair<Symmetric<T, D>, T>;

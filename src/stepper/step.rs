@@ -16,10 +16,10 @@ use super::velocity::divide_by_mass;
 use super::{Energy, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
-use crate::field::MassMomentum;
+use crate::field::{MassMomentum, Symmetric};
 use crate::law::LawSweep;
 use crate::phase::Phase;
-use crate::reconstruction::{Reconstruction, Stored};
+use crate::reconstruction::{Reconstruction, Stresses};
 use crate::scalar::Scalar;
 use crate::transfer::Drift;
 
@@ -165,11 +165,11 @@ where
             let rest = |p: usize| -> StressAndPressure<T, D> { even.rest(phase, &effective[p], &data[p]) };
             fitted.forces::<2>(rest, Targets::<T, D, 0, 0, 2>::of_forces(forces));
         } else if const { P::COUPLED } {
-            let total = |p: usize| phase.total_stress(&effective[p], &data[p]);
+            let total = |p: usize| Symmetric(phase.total_stress(&effective[p], &data[p]));
             fitted.forces::<1>(total, Targets::<T, D, 0, 0, 1>::of_forces(first(forces)));
         } else {
             fitted.forces::<1>(
-                Stored(effective),
+                Stresses(effective),
                 Targets::<T, D, 0, 0, 1>::of_forces(first(forces)),
             );
         }

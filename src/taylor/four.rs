@@ -12,8 +12,8 @@ use crate::field::Field;
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Lanes, Number, Packs, each, in_lanes};
 
-/// Most components of a field: a tensor in three dimensions, and the pressure of a liquid.
-pub const MOST_COMPONENTS: usize = 10;
+/// Most components of a field: a tensor in three dimensions.
+pub const MOST_COMPONENTS: usize = 9;
 
 /// Components of the fields of a step along one axis, at most: mass and momentum.
 pub(crate) const FEW_COMPONENTS: usize = 2;

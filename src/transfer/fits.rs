@@ -5,13 +5,11 @@
 
 use std::ops::Range;
 
-use nalgebra::SMatrix;
-
 use super::Sweep;
 use super::pairs::PairSums;
 use super::sums::{Parts, Sum, Sums};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
-use crate::field::{Field, MassMomentum, Pair};
+use crate::field::{Field, MassMomentum, Pair, Symmetric, symmetric_component};
 use crate::grid::Cell;
 use crate::reconstruction::{Cloud, Point, Reconstruction, Values, four_cells};
 use crate::scalar::Scalar;
@@ -354,7 +352,7 @@ pub(crate) trait Integrand<
 pub(crate) struct Stress;
 
 impl<T: Scalar, const D: usize> Integrand<T, D, 0, 0, 1, 0> for Stress {
-    type Field = SMatrix<T, D, D>;
+    type Field = Symmetric<T, D>;
     const CONSERVED: bool = false;
 
     #[inline(always)]
@@ -373,7 +371,7 @@ impl<T: Scalar, const D: usize> Integrand<T, D, 0, 0, 1, 0> for Stress {
 }
 
 impl<T: Scalar, const D: usize> Integrand<T, D, 0, 0, 2, 0> for Stress {
-    type Field = Pair<SMatrix<T, D, D>, T>;
+    type Field = Pair<Symmetric<T, D>, T>;
     const CONSERVED: bool = false;
 
     #[inline(always)]
@@ -381,7 +379,7 @@ impl<T: Scalar, const D: usize> Integrand<T, D, 0, 0, 2, 0> for Stress {
         let total = tensor(value, slopes);
         let mut pressure = [[value[0] - value[0]; D]; D];
         for c in 0..D {
-            pressure[c][c] = value[D * D] * slopes[c];
+            pressure[c][c] = value[D * (D + 1) / 2] * slopes[c];
         }
         Parts {
             scalars: [],
@@ -404,7 +402,7 @@ fn tensor<T, V: Number<T>, const D: usize>(value: &[V; MOST_COMPONENTS], slopes:
         |c| {
             each(
                 #[inline(always)]
-                |a| value[c + a * D] * slopes[a],
+                |a| value[symmetric_component::<D>(c, a)] * slopes[a],
             )
         },
     )

@@ -6,7 +6,7 @@ use super::super::acceleration::Walls;
 use super::super::{FaceCondition, Forcing, PoreCondition, Stepper, SurfacePoint};
 use super::seal::{Answer, Place, Seal};
 use crate::basis::BasisFamily;
-use crate::field::Pair;
+use crate::field::{Pair, Symmetric};
 use crate::grid::Side;
 use crate::law::LawSweep;
 use crate::phase::{Drag, Phase};
@@ -38,12 +38,12 @@ impl<T: Scalar> EvenLoad<T> {
         phase: &P,
         effective: &SMatrix<T, D, D>,
         data: &P::Particle,
-    ) -> Pair<SMatrix<T, D, D>, T> {
+    ) -> Pair<Symmetric<T, D>, T> {
         let mut total = phase.total_stress(effective, data);
         for a in 0..D {
             total[(a, a)] -= self.stress;
         }
-        Pair(total, phase.liquid(data).pressure - self.pressure)
+        Pair(Symmetric(total), phase.liquid(data).pressure - self.pressure)
     }
 }
 
