@@ -96,6 +96,27 @@ impl<W: Sliced + Default, const N: usize> Sliced for [W; N] {
     }
 }
 
+/// So many values for each group of items, which are never cut.
+pub(crate) struct Groups<'a, T> {
+    pub(crate) values: &'a mut [T],
+    /// Items of a group, and values.
+    pub(crate) sizes: [usize; 2],
+}
+
+impl<T: Send> Sliced for Groups<'_, T> {
+    fn items(&self) -> usize {
+        0
+    }
+
+    fn split(self, _spans: usize, items: usize) -> (Self, Self) {
+        let sizes = self.sizes;
+        let middle = (items.div_ceil(sizes[0]) * sizes[1]).min(self.values.len());
+        let (left, right) = self.values.split_at_mut(middle);
+        let part = |values| Self { values, sizes };
+        (part(left), part(right))
+    }
+}
+
 macro_rules! tuple {
     ($($name:ident $field:tt),+) => {
         /// The first one is asked for the number of items.

@@ -132,6 +132,25 @@ pub struct Four {
     pub reduced: usize,
 }
 
+/// What is kept of four cells from the first fit of a step to the second.
+#[derive(Debug)]
+pub struct Kept<'a, T> {
+    /// As many numbers as [`Reconstruction::KEPT`], or none: nothing can be kept then.
+    pub numbers: &'a mut [[T; LANES]],
+    /// Whether particles have not moved since they were kept.
+    pub fresh: bool,
+}
+
+impl<T> Kept<'_, T> {
+    /// Nothing.
+    pub fn nothing() -> Self {
+        Self {
+            numbers: &mut [],
+            fresh: false,
+        }
+    }
+}
+
 /// A point of the stream.
 #[derive(Clone, Copy, Debug)]
 pub struct Point<T, const D: usize> {
@@ -213,6 +232,10 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     /// Whether four cells can be streamed at once without [`Reconstruction::prepare`] ([`Reconstruction::integrate_four`]).
     const BY_FOUR: bool = false;
 
+    /// Numbers of each of four cells that [`Reconstruction::integrate_four`] keeps where it does not conserve, and takes up again
+    /// where it does.
+    const KEPT: usize = 0;
+
     /// Whether [`Reconstruction::integrate_four`] wants what [`Reconstruction::prepare`] and [`Reconstruction::take_in_field`] took in.
     const KEEPS_FITS: bool = false;
 
@@ -292,6 +315,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         _cloud: &Cloud<'_, T, D>,
         _cells: Range<usize>,
         _conserve: bool,
+        _kept: Kept<'_, T>,
         _value: &impl Values<T, Q>,
         _sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {

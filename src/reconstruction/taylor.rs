@@ -11,18 +11,19 @@ use std::ops::Range;
 use nalgebra::SVector;
 
 pub(super) use cell_group::{CellGroup, OfValues, Products, Weighted};
-use cell_group::{Conserved, Free};
+use cell_group::{Conserved, ConservedValues, Free};
 use virtual_points::Lent;
 
 use super::gauss::GaussRule;
-use super::{Cloud, Four, Patch, Point, Reconstruction, Values};
+use super::{Cloud, Four, Kept, Patch, Point, Reconstruction, Values};
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each};
 use crate::taylor::{
-    CellFit, FEW_COMPONENTS, FourSums, Gram, MOST_COMPONENTS, are_few, default_tolerance, taylor_functions,
+    CellFit, FEW_COMPONENTS, FourFits, FourSums, Gram, MOST_COMPONENTS, Rights, SharedFactor, are_few,
+    default_tolerance, kept, taylor_functions,
 };
 
 /// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor functions through
@@ -302,33 +303,58 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
     fn integrate_few<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
         k: K,
-        cloud: &Cloud<'_, T, D>,
-        cells: Range<usize>,
+        (cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
         conserve: bool,
+        kept: Kept<'_, T>,
         value: &impl Values<T, Q>,
         mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {
-        let group = CellGroup::new(cloud, cells.clone());
+        let mut coefficients = [[k.splat(T::zero()); C]; NB];
+        let four = self.fit_four::<K, Q, C>(k, (cloud, cells), conserve, kept, value, &mut coefficients);
         let volume = cloud.grid.cell_volume();
-        let first = usize::from(conserve);
-        let mut sums: FourSums<K::V, NB, C> = if conserve {
-            group.sums::<Conserved, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes)
+        self.rule
+            .emit_lanes(k, volume, &coefficients, Q::COMPONENTS, &mut sink);
+        four
+    }
+
+    /// Coefficients of the fits of four cells. Out of line: it knows nothing of a basis, and is compiled once for all.
+    #[inline(never)]
+    fn fit_four<K: Packs<T>, Q: Field<T>, const C: usize>(
+        &self,
+        k: K,
+        place: (&Cloud<'_, T, D>, Range<usize>),
+        conserve: bool,
+        kept: Kept<'_, T>,
+        value: &impl Values<T, Q>,
+        coefficients: &mut Rights<K::V, NB, C>,
+    ) -> Four {
+        k.run(
+            #[inline(always)]
+            move || self.fit_here::<K, Q, C>(k, place, conserve, kept, value, coefficients),
+        )
+    }
+
+    #[inline(always)]
+    fn fit_here<K: Packs<T>, Q: Field<T>, const C: usize>(
+        &self,
+        k: K,
+        (cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
+        conserve: bool,
+        kept: Kept<'_, T>,
+        value: &impl Values<T, Q>,
+        coefficients: &mut Rights<K::V, NB, C>,
+    ) -> Four {
+        let cloud = &{ *cloud };
+        let group = CellGroup::new(cloud, cells.clone());
+        let mut fits = if conserve {
+            self.fit_conserved::<K, Q, C>(k, (cloud, &group, cells), kept, value)
         } else {
-            group.sums::<Free, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes)
+            let sums = group.sums::<Free, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes);
+            self.fit_free::<K, Q, C>(k, &group, kept, &sums)
         };
-        let mut mean = [k.splat(T::zero()); C];
-        if conserve {
-            let whole = k.splat(T::one() / volume);
-            for q in 0..Q::COMPONENTS {
-                mean[q] = sums.right[0][q] * whole;
-            }
-            sums.take_out(&mean, Q::COMPONENTS);
-        }
-        let mut fits = sums.fit::<T, K, D>(k, first, &group.counts, self.tolerance, Q::COMPONENTS);
         let mut hard = fits.hard;
         let mut negative = false;
         if conserve {
-            fits.coefficients[0] = mean;
             let any = self.rule.may_be_negative::<K, Q, C>(k, &fits.coefficients);
             negative = any != [false; LANES];
             hard = each(
@@ -342,18 +368,116 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
                 |l| hard[l] || cloud.is_cut(&group.cells[l]),
             );
         }
-        self.rule
-            .emit_lanes(k, volume, &fits.coefficients, Q::COMPONENTS, &mut sink);
+        for n in 0..NB {
+            for q in 0..Q::COMPONENTS {
+                coefficients[n][q] = fits.coefficients[n][q];
+            }
+        }
         let mut four = Four::default();
         // What usually is so, and sooner found out than whether each cell is hard.
-        if D == 1 && fits.are_full && !negative && cloud.cuts.is_empty() {
+        if fits.are_full && !negative && cloud.cuts.is_empty() {
             return four;
         }
-        four.hard[..group.len].copy_from_slice(&hard[..group.len]);
+        let first = usize::from(conserve);
         for l in 0..group.len {
-            four.reduced += usize::from(!hard[l] && fits.functions[l] + first < NB);
+            four.hard[l] = hard[l];
+            fits.functions[l] += first;
+            four.reduced += usize::from(!hard[l] && fits.functions[l] < NB);
         }
         four
+    }
+
+    /// The free fit, whose factor is kept if it will do for the other one too.
+    #[inline(always)]
+    fn fit_free<K: Packs<T>, Q: Field<T>, const C: usize>(
+        &self,
+        k: K,
+        group: &CellGroup<D>,
+        kept: Kept<'_, T>,
+        sums: &FourSums<K::V, NB, C>,
+    ) -> FourFits<K::V, NB, C> {
+        let shared = SharedFactor::new::<T, K, D>(k, &sums.gram, &group.counts, self.tolerance);
+        if !kept.numbers.is_empty() {
+            SharedFactor::keep::<T, K>(shared.as_ref(), k, kept.numbers);
+        }
+        match shared {
+            Some(factor) => full_fits(k, &factor, true, &sums.right, Q::COMPONENTS),
+            None => k.run(
+                #[inline(always)]
+                || sums.fit::<T, K, D>(k, 0, &group.counts, self.tolerance, Q::COMPONENTS),
+            ),
+        }
+    }
+
+    /// The fit of densities, whose means are known.
+    #[inline(always)]
+    fn fit_conserved<K: Packs<T>, Q: Field<T>, const C: usize>(
+        &self,
+        k: K,
+        (cloud, group, cells): (&Cloud<'_, T, D>, &CellGroup<D>, Range<usize>),
+        kept: Kept<'_, T>,
+        value: &impl Values<T, Q>,
+    ) -> FourFits<K::V, NB, C> {
+        let shared = match kept.fresh {
+            true => SharedFactor::kept::<T, K>(k, kept.numbers),
+            false => None,
+        };
+        let Some(factor) = shared else {
+            return self.fit_conserved_anew::<K, Q, C>(k, (cloud, cells), value);
+        };
+        let mut sums: FourSums<K::V, NB, C> =
+            group.sums::<ConservedValues, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes);
+        for n in 1..NB {
+            sums.gram[n][0] = factor.with_constant[n];
+        }
+        let mean = sums.take_out_mean::<T, K>(k, cloud.grid.cell_volume(), Q::COMPONENTS);
+        let mut fits = full_fits(k, &factor, false, &sums.right, Q::COMPONENTS);
+        fits.coefficients[0] = mean;
+        fits
+    }
+
+    /// The same with a factorisation of its own.
+    #[inline(never)]
+    fn fit_conserved_anew<K: Packs<T>, Q: Field<T>, const C: usize>(
+        &self,
+        k: K,
+        (cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
+        value: &impl Values<T, Q>,
+    ) -> FourFits<K::V, NB, C> {
+        k.run(
+            #[inline(always)]
+            move || {
+                let group = CellGroup::new(cloud, cells.clone());
+                let mut sums: FourSums<K::V, NB, C> =
+                    group.sums::<Conserved, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes);
+                let mean = sums.take_out_mean::<T, K>(k, cloud.grid.cell_volume(), Q::COMPONENTS);
+                let mut fits = sums.fit::<T, K, D>(k, 1, &group.counts, self.tolerance, Q::COMPONENTS);
+                fits.coefficients[0] = mean;
+                fits
+            },
+        )
+    }
+}
+
+/// Fits with all functions by a factor that cells share.
+#[inline(always)]
+fn full_fits<T: Scalar, K: Packs<T>, const NB: usize, const C: usize>(
+    k: K,
+    factor: &SharedFactor<K::V, NB>,
+    all: bool,
+    right: &Rights<K::V, NB, C>,
+    components: usize,
+) -> FourFits<K::V, NB, C> {
+    let zero = k.splat(T::zero());
+    let mut coefficients = [[zero; C]; NB];
+    for q in 0..components {
+        factor.solve::<T, C>(zero, all, q, right, &mut coefficients);
+    }
+    FourFits {
+        coefficients,
+        hard: [false; LANES],
+        functions: [NB - usize::from(!all); LANES],
+        are_full: true,
     }
 }
 
@@ -518,6 +642,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
     }
 
     const BY_FOUR: bool = true;
+    const KEPT: usize = kept::<NB>();
 
     fn line(&self) -> impl Iterator<Item = T> {
         // Virtual points want the fits of neighbours.
@@ -536,15 +661,16 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         cloud: &Cloud<'_, T, D>,
         cells: Range<usize>,
         conserve: bool,
+        kept: Kept<'_, T>,
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {
         if const { are_few::<T, Q, D>() && Q::COMPONENTS == 1 } {
-            self.integrate_few::<K, Q, 1>(k, cloud, cells, conserve, value, sink)
+            self.integrate_few::<K, Q, 1>(k, (cloud, cells), conserve, kept, value, sink)
         } else if const { are_few::<T, Q, D>() } {
-            self.integrate_few::<K, Q, FEW_COMPONENTS>(k, cloud, cells, conserve, value, sink)
+            self.integrate_few::<K, Q, FEW_COMPONENTS>(k, (cloud, cells), conserve, kept, value, sink)
         } else {
-            self.integrate_few::<K, Q, MOST_COMPONENTS>(k, cloud, cells, conserve, value, sink)
+            self.integrate_few::<K, Q, MOST_COMPONENTS>(k, (cloud, cells), conserve, kept, value, sink)
         }
     }
 

@@ -12,11 +12,12 @@ use super::sums::{InSpan, Targets};
 use crate::basis::BasisFamily;
 use crate::field::{Field, MassMomentum, Pair, Symmetric};
 use crate::mass::banded_row;
-use crate::parallel::{PerSpan, Windows, add_up, each_span};
+use crate::parallel::{Groups, PerSpan, Windows, add_up, each_span};
 use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Values};
 use crate::scalar::Scalar;
+use crate::simd::LANES;
 use crate::transfer::{self, Fits, Integrand, MassesAndMomenta, Parts, Stress, Sum, Sweep, at_fixed_points};
 
 /// What is fitted, and in which functions it ends up.
@@ -77,17 +78,22 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             lengths,
             store,
             reduced,
+            kept,
+            fresh,
             ..
         } = self.spans;
         let (span, parallel) = share::<D>(spans, occupied.len(), lengths[1]);
         reduced.fill(0);
+        let is_fresh = *fresh;
+        *fresh |= self.by_four && !I::CONSERVED;
         let work = (
             occupied,
             store.windows(spans, &mut targets),
             PerSpan(&mut reduced[..]),
+            room::<T, D, R>(kept, occupied.len(), self.by_four),
         );
         let by_four = self.by_four;
-        each_span(parallel, span, work, &|place, (cells, windows, reduced)| {
+        each_span(parallel, span, work, &|place, (cells, windows, reduced, kept)| {
             // By value: references to the slices would be read anew for each DOF.
             let mut sums = InSpan::new(windows);
             let cells = place..place + cells.len();
@@ -97,10 +103,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                     reconstruction,
                     cloud,
                     cells,
+                    fresh: is_fresh,
                 };
                 let mut sink = move |dof: usize, sum| sums.add(dof, sum);
                 let found = at_fixed_points!(B, basis, |basis| Sweep::new(basis, cloud.grid)
-                    .integrate::<_, _, I, S, C, G, 0>(&fits, value, &mut sink, &mut |_, _, _, _| ()));
+                    .integrate::<_, _, I, S, C, G, 0>(&fits, kept.values, value, &mut sink, &mut |_, _, _, _| ()));
                 return reduced.set(found);
             }
             let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, |dof, sum| sums.add(dof, sum));
@@ -168,8 +175,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             cells: spans,
             lengths,
             store,
+            kept,
+            fresh,
             ..
         } = self.spans;
+        let is_fresh = *fresh;
         let (span, parallel) = share::<D>(spans, occupied.len(), lengths[1]);
         let super::spans::Store {
             vectors, matrices, ..
@@ -181,8 +191,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         });
         let of_momenta = super::sums::windows(spans, vectors, targets.vectors.each_mut().map(|t| &mut **t));
         let by_four = self.by_four;
-        let work = (occupied, of_rows, of_momenta);
-        each_span(parallel, span, work, &|place, (cells, rows, momenta)| {
+        let kept = room::<T, D, R>(kept, occupied.len(), by_four);
+        let work = (occupied, of_rows, of_momenta, kept);
+        each_span(parallel, span, work, &|place, (cells, rows, momenta, kept)| {
             let mut first = 0;
             let rows: [&mut [T]; C] = rows.map(|window| {
                 let (start, rows) = window.one();
@@ -202,10 +213,12 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                     reconstruction,
                     cloud,
                     cells,
+                    fresh: is_fresh,
                 };
                 at_fixed_points!(B, basis, |basis| {
                     Sweep::new(basis, cloud.grid).integrate::<_, _, MassesAndMomenta<Q>, 0, C, 0, C>(
                         &fits,
+                        kept.values,
                         densities,
                         &mut sink,
                         &mut matrix,
@@ -259,10 +272,13 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                 reconstruction: &*self.reconstruction,
                 cloud,
                 cells: 0..cloud.bins.occupied().len(),
+                fresh: self.spans.fresh,
             };
+            let kept = room::<T, D, R>(&mut self.spans.kept, cloud.bins.occupied().len(), true);
             at_fixed_points!(B, basis, |basis| {
                 Sweep::new(basis, cloud.grid).integrate::<_, _, MassesAndMomenta<Q>, 0, C, 0, C>(
                     &fits,
+                    kept.values,
                     densities,
                     &mut sink,
                     &mut matrix,
@@ -273,6 +289,21 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         let amount = |p: usize| amount_of(densities.at(p), true, cloud.volumes[p]);
         let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, sink, matrix);
         self.reconstruction.integrate_conserved(cloud, amount, sink);
+    }
+}
+
+/// Room for what is kept of so many cells.
+fn room<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
+    kept: &mut Vec<[T; LANES]>,
+    cells: usize,
+    by_four: bool,
+) -> Groups<'_, [T; LANES]> {
+    let groups = if by_four { cells.div_ceil(LANES) } else { 0 };
+    // What was kept stays where the cells are the same.
+    kept.resize(groups * R::KEPT, [T::zero(); LANES]);
+    Groups {
+        values: kept,
+        sizes: [LANES, R::KEPT],
     }
 }
 

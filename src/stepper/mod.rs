@@ -64,7 +64,7 @@ use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Crossed, Cut, Reconstruction};
 use crate::scalar::Scalar;
-use crate::simd::packs_serve;
+use crate::simd::{LANES, packs_serve};
 use crate::transfer;
 use dofs::{Dofs, MassModel};
 use order::Order;
@@ -285,6 +285,10 @@ where
         let dofs = self.dofs.mass.len();
         let each = if P::FLOWS { [SCALARS, VECTORS] } else { [1, 3] };
         self.spans.allocate(each, R::BY_CELLS, dofs);
+        if self.by_four() {
+            let cells = self.particles.len().min(self.grid.cell_count());
+            self.spans.kept.reserve_exact(cells.div_ceil(LANES) * R::KEPT);
+        }
         if R::AMOUNTS_AT_PARTICLES {
             return;
         }
@@ -368,6 +372,7 @@ where
 
     /// Takes in where the particles are.
     fn prepare(&mut self) {
+        self.spans.fresh = false;
         if self.strayed {
             self.follow_particles();
         }

@@ -10,6 +10,7 @@ use crate::grid::Grid;
 use crate::parallel::{CELLS, PARTICLES, SpanWindow, fit, worth_sharing};
 use crate::particles::Bins;
 use crate::scalar::Scalar;
+use crate::simd::LANES;
 use crate::transfer::{self, Momentum};
 
 /// Windows of the spans of particles and of occupied cells, sums in them, and partial results.
@@ -33,6 +34,10 @@ pub(super) struct Spans<T, const D: usize> {
     pub(super) moved: Vec<Moved<T>>,
     /// Of spans of cells, how many were fitted without the full set of functions.
     pub(super) reduced: Vec<usize>,
+    /// What is kept of each four cells from the fit of the stress to that of the densities.
+    pub(super) kept: Vec<[T; LANES]>,
+    /// Whether no particle has moved since.
+    pub(super) fresh: bool,
 }
 
 /// Room for the sums of windows: of so many scalars and vectors a DOF, and of rows of a matrix.
@@ -157,6 +162,8 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             totals: vec![Totals::zero(); spans],
             moved: vec![Moved::default(); spans],
             reduced: Vec::new(),
+            kept: Vec::new(),
+            fresh: false,
         }
     }
 
@@ -248,6 +255,7 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             + size_of::<SVector<T, D>>() * self.store.vectors.iter().map(Vec::capacity).sum::<usize>()
             + size_of::<Totals<T, D>>() * self.totals.capacity()
             + size_of::<usize>() * self.reduced.capacity()
+            + size_of::<[T; LANES]>() * self.kept.capacity()
             + size_of::<Moved<T>>() * self.moved.capacity()
     }
 

@@ -134,9 +134,30 @@ impl<V: Copy, const NB: usize, const C: usize> FourSums<V, NB, C> {
         }
     }
 
+    /// Takes the mean of each component over a cell of the given volume, whose integral is its sum with the first function, out of
+    /// the sums; returns it.
+    #[inline(always)]
+    pub(crate) fn take_out_mean<T: Scalar, K: Lanes<T, V = V>>(
+        &mut self,
+        k: K,
+        volume: T,
+        components: usize,
+    ) -> [V; C]
+    where
+        V: Number<T>,
+    {
+        let whole = k.splat(T::one() / volume);
+        let mut mean = [k.splat(T::zero()); C];
+        for q in 0..components {
+            mean[q] = self.right[0][q] * whole;
+        }
+        self.take_out(&mean, components);
+        mean
+    }
+
     /// Takes a mean, known of each component, out of the sums.
     #[inline(always)]
-    pub(crate) fn take_out<T: Scalar>(&mut self, mean: &[V; C], components: usize)
+    fn take_out<T: Scalar>(&mut self, mean: &[V; C], components: usize)
     where
         V: Number<T>,
     {

@@ -11,7 +11,7 @@ use super::sums::{Parts, Sum, Sums};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::field::{Field, MassMomentum, Pair, Symmetric, symmetric_component};
 use crate::grid::Cell;
-use crate::reconstruction::{Cloud, Point, Reconstruction, Values, four_cells};
+use crate::reconstruction::{Cloud, Kept, Point, Reconstruction, Values, four_cells};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Number, Packs, dispatch_vectors, each, in_lanes, inlined};
 use crate::taylor::MOST_COMPONENTS;
@@ -133,6 +133,8 @@ pub(crate) struct Fits<'a, 'c, T, const D: usize, M, R> {
     pub(crate) cloud: &'a Cloud<'c, T, D>,
     /// Places in the list of occupied cells.
     pub(crate) cells: Range<usize>,
+    /// Whether what was kept of them is of these positions.
+    pub(crate) fresh: bool,
 }
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
@@ -165,13 +167,14 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     >(
         &self,
         fits: &Fits<'_, '_, T, D, M, R>,
+        kept: &mut [[T; LANES]],
         value: &(impl Values<T, I::Field> + Copy),
         sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
         matrix: &mut impl FnMut(usize, usize, usize, T),
     ) -> usize {
         let (sweep, value) = (*self, *value);
         dispatch_vectors!(T, |k| sweep
-            .integrate_in::<_, M, R, I, S, C, G, W>(k, fits, &value, sink, matrix))
+            .integrate_in::<_, M, R, I, S, C, G, W>(k, fits, kept, &value, sink, matrix))
     }
 
     #[inline(always)]
@@ -188,6 +191,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         &self,
         k: K,
         fits: &Fits<'_, '_, T, D, M, R>,
+        kept: &mut [[T; LANES]],
         value: &impl Values<T, I::Field>,
         sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
         matrix: &mut impl FnMut(usize, usize, usize, T),
@@ -201,6 +205,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         let mut pairs = [PairSums::<K::V, D>::new(k); W];
         let slopes = self.inverse(k);
         let mut reduced = 0;
+        let mut numbers = kept.chunks_exact_mut(R::KEPT.max(1));
         for first in cells.clone().step_by(LANES) {
             let places = first..cells.end.min(first + LANES);
             let four = four_cells(cloud, places.clone()).map(|(_, cell)| cell);
@@ -210,6 +215,10 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 cloud,
                 places.clone(),
                 I::CONSERVED,
+                Kept {
+                    numbers: numbers.next().unwrap_or_default(),
+                    fresh: fits.fresh,
+                },
                 value,
                 #[inline(always)]
                 |number, value| {

@@ -15,7 +15,7 @@ mod tests;
 use std::ops::Range;
 
 use super::gauss::GaussRule;
-use super::{Cloud, Crossed, Filling, Four, Point, Reconstruction, Shepard, Stored, Values};
+use super::{Cloud, Crossed, Filling, Four, Kept, Point, Reconstruction, Shepard, Stored, Values};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::parallel::CELLS;
@@ -229,6 +229,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         cloud: &Cloud<'_, T, D>,
         cells: Range<usize>,
         _conserve: bool,
+        _kept: Kept<'_, T>,
         _value: &impl Values<T, Q>,
         mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {

@@ -43,6 +43,14 @@ impl Sought for Conserved {
     const CONSERVED: bool = true;
 }
 
+/// What a field of densities adds to that, given the products.
+pub(in super::super) struct ConservedValues;
+
+impl Sought for ConservedValues {
+    const PRODUCTS: bool = false;
+    const CONSERVED: bool = true;
+}
+
 /// Sums of a weighted fit.
 pub(in super::super) struct Weighted;
 

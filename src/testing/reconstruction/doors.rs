@@ -4,7 +4,7 @@
 use nalgebra::SVector;
 
 use super::stream::{Streamed, collect, largest_response, relative_error, uneven};
-use crate::reconstruction::{Cloud, Point, Reconstruction};
+use crate::reconstruction::{Cloud, Kept, Point, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Plain};
 use crate::testing::failure::{Failure, Place, Property, near};
@@ -90,6 +90,7 @@ fn by_four<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
             cloud,
             places.clone(),
             conserve,
+            Kept::nothing(),
             value,
             |number, components| lanes_of_points.push((number, components[0].0)),
         );

@@ -5,7 +5,7 @@ use std::ops::Range;
 use materialpoint::field::Field;
 use materialpoint::grid::Grid;
 use materialpoint::reconstruction::{
-    Cloud, CubicSpline, Four, Point, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor, Values,
+    Cloud, CubicSpline, Four, Kept, Point, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor, Values,
 };
 use materialpoint::scalar::Scalar;
 use materialpoint::simd::Packs;
@@ -411,12 +411,13 @@ impl Reconstruction<f64, 1> for Doors {
         cloud: &Cloud<'_, f64, 1>,
         cells: Range<usize>,
         conserve: bool,
+        kept: Kept<'_, f64>,
         value: &impl Values<f64, Q>,
         mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {
         let mut four = self
             .0
-            .integrate_four::<K, Q>(k, cloud, cells, conserve, value, |number, values| {
+            .integrate_four::<K, Q>(k, cloud, cells, conserve, kept, value, |number, values| {
                 let mut values = *values;
                 let [a, b, c, d] = k.array(values[0]);
                 match self.1 {

@@ -1,0 +1,158 @@
+//! One factorisation for both fits of a step.
+//!
+//! Between the fit of the stress and that of the densities no particle moves, so both have the same Gram matrix. With the constant
+//! function last in `L D L^T` the columns before it are the factor of the fit whose mean is given, and all of them that of the
+//! free one. Only for cells that clearly determine all functions: where some are left out the order decides which.
+
+use nalgebra::SVector;
+
+use super::basis::taylor_sizes;
+use super::fit::GRAM_SHARE;
+use super::four::{Products, Rights};
+use crate::scalar::Scalar;
+use crate::simd::{LANES, Number, Packs};
+
+/// The factor of four cells, functions in the order of [`function`].
+#[derive(Clone, Copy)]
+pub(crate) struct SharedFactor<V, const NB: usize> {
+    /// Unit triangular below the diagonal, one over the squares that are left on it.
+    lower: Products<V, NB>,
+    /// Products of each function with the constant one.
+    pub(crate) with_constant: [V; NB],
+}
+
+/// Which function is the `m`-th.
+#[inline(always)]
+const fn function<const NB: usize>(m: usize) -> usize {
+    if m + 1 < NB { m + 1 } else { 0 }
+}
+
+/// Numbers that are kept of a cell: the factor, the products with the constant, and whether there are any.
+pub(crate) const fn kept<const NB: usize>() -> usize {
+    NB * (NB + 1) / 2 + NB + 1
+}
+
+impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
+    /// Of the Gram matrices `gram` of cells with so many points, if these clearly determine all functions of all four.
+    #[inline(always)]
+    pub(crate) fn new<T: Scalar, K: Packs<T, V = V>, const D: usize>(
+        k: K,
+        gram: &Products<V, NB>,
+        counts: &[usize; LANES],
+        tolerance: T,
+    ) -> Option<Self>
+    where
+        V: Number<T>,
+    {
+        let (zero, one) = (k.splat(T::zero()), k.splat(T::one()));
+        let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
+        let share = k.splat(T::lit(GRAM_SHARE));
+        let mut lower = [[zero; NB]; NB];
+        let mut full = one;
+        for m in 0..NB {
+            let own = function::<NB>(m);
+            let square = gram[own][own];
+            let mut left = square;
+            let mut row = [zero; NB];
+            for j in 0..m {
+                let other = function::<NB>(j);
+                let (high, low) = if own > other { (own, other) } else { (other, own) };
+                let mut dot = gram[high][low];
+                for i in 0..j {
+                    dot = dot - lower[j][i] * row[i];
+                }
+                row[j] = dot;
+                lower[m][j] = dot * lower[j][j];
+                left = left - lower[m][j] * dot;
+            }
+            let least = gram[0][0] * k.splat(tolerance * tolerance * sizes[own] * sizes[own]);
+            full = full * left.above(least) * left.above(square * share);
+            lower[m][m] = one / left;
+        }
+        let mut with_constant = [gram[0][0]; NB];
+        for n in 1..NB {
+            with_constant[n] = gram[n][0];
+        }
+        let (half, two) = (k.splat(T::one() / T::lit(2.0)), k.splat(T::lit(2.0)));
+        let are_enough = counts[0] >= NB && counts[1] >= NB && counts[2] >= NB && counts[3] >= NB;
+        (are_enough && k.are_between(full, half, two)).then_some(Self {
+            lower,
+            with_constant,
+        })
+    }
+
+    /// Keeps it, or that there is none.
+    #[inline(always)]
+    pub(crate) fn keep<T: Scalar, K: Packs<T, V = V>>(factor: Option<&Self>, k: K, kept: &mut [[T; LANES]]) {
+        let mut places = kept.iter_mut();
+        let mut put = |numbers: [T; LANES]| {
+            if let Some(place) = places.next() {
+                *place = numbers;
+            }
+        };
+        let Some(factor) = factor else {
+            return put([T::zero(); LANES]);
+        };
+        put([T::one(); LANES]);
+        for m in 0..NB {
+            for j in 0..=m {
+                put(k.array(factor.lower[m][j]));
+            }
+            put(k.array(factor.with_constant[m]));
+        }
+    }
+
+    /// What was kept, if anything was.
+    #[inline(always)]
+    pub(crate) fn kept<T: Scalar, K: Packs<T, V = V>>(k: K, kept: &[[T; LANES]]) -> Option<Self> {
+        let (there, numbers) = kept.split_first()?;
+        if there[0].is_zero() || numbers.len() < NB * (NB + 1) / 2 + NB {
+            return None;
+        }
+        let zero = k.splat(T::zero());
+        let (mut lower, mut with_constant, mut n) = ([[zero; NB]; NB], [zero; NB], 0);
+        for m in 0..NB {
+            for j in 0..=m {
+                lower[m][j] = k.new(numbers[n]);
+                n += 1;
+            }
+            with_constant[m] = k.new(numbers[n]);
+            n += 1;
+        }
+        Some(Self {
+            lower,
+            with_constant,
+        })
+    }
+
+    /// Coefficients of component `q` from its sums, with all functions or, given the mean, all but the constant.
+    #[inline(always)]
+    pub(crate) fn solve<T: Scalar, const C: usize>(
+        &self,
+        zero: V,
+        all: bool,
+        q: usize,
+        right: &Rights<V, NB, C>,
+        coefficients: &mut Rights<V, NB, C>,
+    ) where
+        V: Number<T>,
+    {
+        let (l, count) = (&self.lower, if all { NB } else { NB - 1 });
+        let mut x = [zero; NB];
+        for m in 0..count {
+            x[m] = right[function::<NB>(m)][q];
+            for j in 0..m {
+                x[m] = x[m] - l[m][j] * x[j];
+            }
+        }
+        for m in 0..count {
+            x[m] = x[m] * l[m][m];
+        }
+        for m in (0..count).rev() {
+            for j in m + 1..count {
+                x[m] = x[m] - l[j][m] * x[j];
+            }
+            coefficients[function::<NB>(m)][q] = x[m];
+        }
+    }
+}
