@@ -2,14 +2,17 @@
 //!
 #![doc = include_str!("../../docs/formulas.html")]
 //!
-//! Euler-Cromer with modified update stress last (MUSL, Sulsky, Zhou & Schreyer 1995), one file per stage:
+//! Euler-Cromer with modified update stress last (MUSL, Sulsky, Zhou & Schreyer 1995). The list of stages is in `step`, and
+//! each stage in the file of its name:
 //!
-//! 1. `forces`: $m_i = \sum_p m_p\phi_i(x_p)$ and $f_i = -\int\sigma\nabla\phi_i + \text{traction}$;
-//! 2. `acceleration`: $a_i = f_i/m_i + b$, the prescribed value on constrained DOFs;
-//! 3. `velocity`: $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p) a_i$, then DOF velocities from the updated particles, whose
-//!    momenta `mapping` puts to the DOFs, and the impulses of walls that rub (`contact`);
-//! 4. `advance`: position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$, stress by the law,
+//! 1. `sums`, `fitted`: P2G of $m_i = \sum_p m_p\phi_i(x_p)$ and $f_i = -\int\sigma\nabla\phi_i + \text{traction}$;
+//! 2. `acceleration`: $a_i = f_i/m_i + b$, the prescribed (Dirichlet) value on constrained DOFs;
+//! 3. `kick`: G2P of $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p) a_i$, the FLIP update, then P2G of the particles' new momenta;
+//! 4. `velocity`: DOF velocities from these, and the impulses of walls that rub (`contact`);
+//! 5. `drift`: G2P of position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$, stress by the law,
 //!    volume by $\det(1+\Delta\varepsilon)$ at large strain.
+//!
+//! With a liquid that flows through the pores the same stages take both phases together (`liquid` has the second balance).
 //!
 //! Basis values of all stages are taken at the positions at the start of the step. Velocity lives half a step
 //! early: started from $v(0)$, after $n$ steps it approximates $v(n\Delta t - \Delta t/2)$, to first order

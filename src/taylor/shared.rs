@@ -156,3 +156,67 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{Four, Plain};
+    use crate::taylor::{FourSums, taylor_lanes};
+
+    /// Sums over points that lie in no order, another count in each cell.
+    fn sums<const D: usize, const NB: usize>(counts: &[usize; LANES]) -> FourSums<Four<f64>, NB, 2> {
+        let mut sums = FourSums::new::<f64, _>(Plain);
+        let number = |seed: usize| ((seed * seed + 7 * seed + 3) % 101) as f64 / 50.5 - 1.0;
+        for p in 0..*counts.iter().max().unwrap() {
+            let s = std::array::from_fn(|a| Four(std::array::from_fn(|l| number(31 * p + 7 * a + 3 * l))));
+            let psi = taylor_lanes::<f64, Plain, D, NB>(Plain, &s);
+            let weight = Four(counts.map(|count| f64::from(u8::from(p < count))));
+            let value = Four(std::array::from_fn(|l| number(13 * p + l)));
+            sums.add_products(&psi, weight, 0);
+            sums.add_values(&psi, weight, weight, &[value, weight], 2);
+        }
+        sums
+    }
+
+    fn check<const D: usize, const NB: usize>() {
+        let counts = [2 * NB, 3 * NB, 2 * NB + 1, 4 * NB];
+        let mut sums = sums::<D, NB>(&counts);
+        let factor = SharedFactor::new::<f64, _, D>(Plain, &sums.gram, &counts, 1e-3).unwrap();
+        let mut kept = vec![[0.0; LANES]; super::kept::<NB>()];
+        SharedFactor::keep::<f64, _>(Some(&factor), Plain, &mut kept);
+        let again = SharedFactor::kept::<f64, _>(Plain, &kept).unwrap();
+        for all in [true, false] {
+            let first = usize::from(!all);
+            let expected = sums.fit::<f64, _, D>(Plain, first, &counts, 1e-3, 2);
+            assert_eq!(expected.hard, [false; LANES]);
+            let mut found = [[Four([0.0; LANES]); 2]; NB];
+            for q in 0..2 {
+                again.solve::<f64, 2>(Four([0.0; LANES]), all, q, &sums.right, &mut found);
+            }
+            for (found, expected) in found.iter().zip(&expected.coefficients).skip(first) {
+                for l in 0..LANES {
+                    assert!((found[0].0[l] - expected[0].0[l]).abs() < 1e-11, "{D} {all}");
+                }
+            }
+            sums.take_out_mean::<f64, _>(Plain, 2.0, 2);
+        }
+    }
+
+    #[test]
+    fn it_solves_both_fits_as_two_factorisations_do() {
+        check::<1, 3>();
+        check::<1, 2>();
+        check::<2, 6>();
+        check::<3, 10>();
+    }
+
+    #[test]
+    fn cells_with_few_points_have_none() {
+        let counts = [12, 12, 5, 12];
+        let sums = sums::<2, 6>(&counts);
+        assert!(SharedFactor::new::<f64, _, 2>(Plain, &sums.gram, &counts, 1e-3).is_none());
+        let mut kept = vec![[1.0; LANES]; super::kept::<6>()];
+        SharedFactor::<Four<f64>, 6>::keep::<f64, _>(None, Plain, &mut kept);
+        assert!(SharedFactor::<Four<f64>, 6>::kept::<f64, _>(Plain, &kept).is_none());
+    }
+}

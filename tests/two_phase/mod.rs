@@ -12,3 +12,4 @@ mod long_waves;
 mod random;
 pub mod sealed;
 mod standing_wave;
+mod threads;
