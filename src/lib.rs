@@ -61,6 +61,9 @@
 
 #![forbid(unsafe_code)]
 
+/// The crate of vectors and matrices that appear in this one's types.
+pub use nalgebra;
+
 pub mod basis;
 pub mod error;
 pub mod field;

@@ -107,7 +107,13 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                 };
                 let mut sink = move |dof: usize, sum| sums.add(dof, sum);
                 let found = at_fixed_points!(B, basis, |basis| Sweep::new(basis, cloud.grid)
-                    .integrate::<_, _, I, S, C, G, 0>(&fits, kept.values, value, &mut sink, &mut |_, _, _, _| ()));
+                    .integrate::<_, _, I, S, C, G, 0>(
+                        &fits,
+                        kept.values,
+                        value,
+                        &mut sink,
+                        &mut |_, _, _, _| ()
+                    ));
                 return reduced.set(found);
             }
             let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, |dof, sum| sums.add(dof, sum));

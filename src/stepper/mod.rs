@@ -40,6 +40,7 @@ mod material_fields;
 mod matrix;
 mod order;
 mod pairs;
+mod parts;
 mod polynomial;
 mod relax;
 mod simulation;

@@ -75,10 +75,7 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
         }
         let (half, two) = (k.splat(T::one() / T::lit(2.0)), k.splat(T::lit(2.0)));
         let are_enough = counts[0] >= NB && counts[1] >= NB && counts[2] >= NB && counts[3] >= NB;
-        (are_enough && k.are_between(full, half, two)).then_some(Self {
-            lower,
-            with_constant,
-        })
+        (are_enough && k.are_between(full, half, two)).then_some(Self { lower, with_constant })
     }
 
     /// Keeps it, or that there is none.
@@ -119,10 +116,7 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
             with_constant[m] = k.new(numbers[n]);
             n += 1;
         }
-        Some(Self {
-            lower,
-            with_constant,
-        })
+        Some(Self { lower, with_constant })
     }
 
     /// Coefficients of component `q` from its sums, with all functions or, given the mean, all but the constant.

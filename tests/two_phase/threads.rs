@@ -103,7 +103,13 @@ where
     for p in 0..count {
         let q = p * 10_007 % count;
         // Positions, velocities of both phases, stress and pressure: where they begin, how many, and what is round-off.
-        for (first, each, size) in [(0, 2, 1e-9), (2, 2, 1e-9), (4, 2, 1e-9), (6, 1, 1e-4), (7, 1, 1e-4)] {
+        for (first, each, size) in [
+            (0, 2, 1e-9),
+            (2, 2, 1e-9),
+            (4, 2, 1e-9),
+            (6, 1, 1e-4),
+            (7, 1, 1e-4),
+        ] {
             let first = first * count;
             for c in 0..each {
                 let (a, b) = (one[first + q * each + c], shuffled[first + p * each + c]);
@@ -118,5 +124,9 @@ fn any_number_of_threads_gives_the_bits_of_one_and_the_order_of_particles_does_n
     check(Linear, Shepard, VelocityMass::Lumped);
     check(DualDomain::new(), Shepard, VelocityMass::Lumped);
     check(BSpline::<2>, Taylor::<f64, 2, 6>::new(), VelocityMass::Lumped);
-    check(BSpline::<2>, Taylor::<f64, 2, 6>::new(), VelocityMass::Constrained);
+    check(
+        BSpline::<2>,
+        Taylor::<f64, 2, 6>::new(),
+        VelocityMass::Constrained,
+    );
 }

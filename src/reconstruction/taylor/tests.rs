@@ -32,12 +32,26 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
         mass: 2.0,
         momentum: vector![1.0, 0.0],
     };
-    let four =
-        taylor.integrate_four::<Plain, MassMomentum<f64, 2>>(Plain, &cloud, 0..2, true, Kept::nothing(), &density, |_, _| ());
+    let four = taylor.integrate_four::<Plain, MassMomentum<f64, 2>>(
+        Plain,
+        &cloud,
+        0..2,
+        true,
+        Kept::nothing(),
+        &density,
+        |_, _| (),
+    );
     assert_eq!(four.hard, [false, true, false, false]);
     let momentum = |p: usize| density(p).momentum;
-    let any =
-        taylor.integrate_four::<Plain, SVector<f64, 2>>(Plain, &cloud, 0..2, true, Kept::nothing(), &momentum, |_, _| ());
+    let any = taylor.integrate_four::<Plain, SVector<f64, 2>>(
+        Plain,
+        &cloud,
+        0..2,
+        true,
+        Kept::nothing(),
+        &momentum,
+        |_, _| (),
+    );
     assert_eq!(any.hard, [false; LANES]);
     let (mut least, mut sum) = (f64::INFINITY, 0.0);
     let mut add = |_: &Point<f64, 2>, weighted: MassMomentum<f64, 2>| {
@@ -83,7 +97,15 @@ fn the_order_of_particles_does_not_matter() {
             let add = |_: usize, value: &[Four<f64>; MOST_COMPONENTS]| {
                 found.extend(value[..2].iter().flat_map(|q| q.0));
             };
-            let four = taylor.integrate_four::<Plain, _>(Plain, &cloud, cells, conserve, Kept::nothing(), &density, add);
+            let four = taylor.integrate_four::<Plain, _>(
+                Plain,
+                &cloud,
+                cells,
+                conserve,
+                Kept::nothing(),
+                &density,
+                add,
+            );
             assert_eq!(four.hard, [false; LANES]);
         }
         found
@@ -110,14 +132,30 @@ fn a_field_of_many_components_is_streamed_along_one_axis_too() {
     let (mut single, mut all) = (Vec::new(), Vec::new());
     for c in 0..3 {
         let one = |p: usize| component(p, c);
-        taylor.integrate_four::<Plain, f64>(Plain, &cloud, 0..4, false, Kept::nothing(), &one, |point, value| {
-            single.push((point, c, value[0].0));
-        });
+        taylor.integrate_four::<Plain, f64>(
+            Plain,
+            &cloud,
+            0..4,
+            false,
+            Kept::nothing(),
+            &one,
+            |point, value| {
+                single.push((point, c, value[0].0));
+            },
+        );
     }
     let three = |p: usize| SVector::<f64, 3>::from_fn(|c, _| component(p, c));
-    taylor.integrate_four::<Plain, SVector<f64, 3>>(Plain, &cloud, 0..4, false, Kept::nothing(), &three, |point, value| {
-        all.extend((0..3).map(|c| (point, c, value[c].0)));
-    });
+    taylor.integrate_four::<Plain, SVector<f64, 3>>(
+        Plain,
+        &cloud,
+        0..4,
+        false,
+        Kept::nothing(),
+        &three,
+        |point, value| {
+            all.extend((0..3).map(|c| (point, c, value[c].0)));
+        },
+    );
     all.sort_by_key(|&(point, c, _)| (c, point));
     assert_eq!(single, all);
 }

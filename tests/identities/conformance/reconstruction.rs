@@ -415,18 +415,18 @@ impl Reconstruction<f64, 1> for Doors {
         value: &impl Values<f64, Q>,
         mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {
-        let mut four = self
-            .0
-            .integrate_four::<K, Q>(k, cloud, cells, conserve, kept, value, |number, values| {
-                let mut values = *values;
-                let [a, b, c, d] = k.array(values[0]);
-                match self.1 {
-                    Door::Four => values[0] = k.splat(0.0) - values[0],
-                    Door::Lane => values[0] = k.new([b, b, c, d]),
-                    _ => values[0] = k.new([a, b, c, d]),
-                }
-                sink(number, &values);
-            });
+        let mut four =
+            self.0
+                .integrate_four::<K, Q>(k, cloud, cells, conserve, kept, value, |number, values| {
+                    let mut values = *values;
+                    let [a, b, c, d] = k.array(values[0]);
+                    match self.1 {
+                        Door::Four => values[0] = k.splat(0.0) - values[0],
+                        Door::Lane => values[0] = k.new([b, b, c, d]),
+                        _ => values[0] = k.new([a, b, c, d]),
+                    }
+                    sink(number, &values);
+                });
         if matches!(self.1, Door::Hard | Door::AllHard) {
             four.hard = [true; 4];
         }
