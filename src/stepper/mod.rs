@@ -287,7 +287,7 @@ where
     fn allocate(&mut self) {
         self.prepare();
         let dofs = self.dofs.mass.len();
-        let each = if P::FLOWS { [SCALARS, VECTORS] } else { [1, 3] };
+        let each = if P::FLOWS { [SCALARS, VECTORS] } else { [1, 1] };
         self.spans.allocate(each, R::BY_CELLS, dofs);
         if self.by_four() {
             let cells = self.particles.len().min(self.grid.cell_count());

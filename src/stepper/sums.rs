@@ -257,7 +257,8 @@ impl<T: Scalar, const D: usize> Store<T, D> {
         spans: &'a [SpanWindow],
         targets: &'a mut Targets<'_, T, D, S, C, G>,
     ) -> AllWindows<'a, T, D, S, C, G> {
-        let (of_momenta, of_forces) = self.vectors.split_at_mut(2);
+        // Sweeps that have no momenta put forces where others put momenta.
+        let (of_momenta, of_forces) = self.vectors.split_at_mut(C);
         (
             windows(
                 spans,
@@ -275,7 +276,7 @@ impl<T: Scalar, const D: usize> Store<T, D> {
         spans: &[SpanWindow],
         targets: &mut Targets<'_, T, D, S, C, G>,
     ) {
-        let (of_momenta, of_forces) = self.vectors.split_at(2);
+        let (of_momenta, of_forces) = self.vectors.split_at(C);
         for (store, target) in self.scalars.iter().zip(&mut targets.scalars) {
             add_up(spans, store, target, 1);
         }
