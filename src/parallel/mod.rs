@@ -10,7 +10,7 @@
 mod sliced;
 mod windows;
 
-pub(crate) use sliced::{Groups, PerSpan, Rows, Sliced};
+pub(crate) use sliced::{Groups, Maybe, PerSpan, Rows, Sliced};
 pub(crate) use windows::{SpanWindow, Windows, add_up, fit};
 
 /// Particles in a span.

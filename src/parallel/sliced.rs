@@ -30,6 +30,23 @@ impl<T: Send> Sliced for &mut [T] {
     }
 }
 
+/// A slice that there need not be.
+pub(crate) struct Maybe<'a, T>(pub(crate) Option<&'a [T]>);
+
+impl<T: Sync> Sliced for Maybe<'_, T> {
+    fn items(&self) -> usize {
+        self.0.map_or(0, <[T]>::len)
+    }
+
+    fn split(self, _spans: usize, items: usize) -> (Self, Self) {
+        let halves = self.0.map(|values| values.split_at(items.min(values.len())));
+        (
+            Self(halves.map(|(left, _)| left)),
+            Self(halves.map(|(_, right)| right)),
+        )
+    }
+}
+
 /// One value for each span.
 pub(crate) struct PerSpan<'a, T>(pub(crate) &'a mut [T]);
 

@@ -122,7 +122,7 @@ where
         sum_particles(
             (&self.basis, &self.grid, &self.bins),
             &self.particles,
-            (&self.phase, even),
+            (&self.phase, even, None),
             &mut self.spans,
             targets,
         );
@@ -264,6 +264,8 @@ where
 
     /// Momenta of the DOFs straight from the particles, of the first so many phases.
     fn sum_momenta<const C: usize>(&mut self) {
+        // Those of the matrices: a volume that was relaxed meanwhile holds another mass.
+        let liquid_masses = const { C > 1 }.then_some(self.joint.liquid_masses());
         let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
         let momenta = Targets::<'_, T, D, 0, C, 0>::of_momenta(first([
             &mut solid.velocity[..],
@@ -272,7 +274,7 @@ where
         sum_particles(
             (&self.basis, &self.grid, &self.bins),
             &self.particles,
-            (&self.phase, EvenLoad::none()),
+            (&self.phase, EvenLoad::none(), liquid_masses),
             &mut self.spans,
             momenta,
         );

@@ -10,7 +10,7 @@ use super::liquid::EvenLoad;
 use super::spans::{Spans, Store, share};
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
-use crate::parallel::{SpanWindow, Windows, add_up, each_span};
+use crate::parallel::{Maybe, SpanWindow, Windows, add_up, each_span};
 use crate::particles::{Bins, Particles};
 use crate::phase::Phase;
 use crate::scalar::Scalar;
@@ -26,6 +26,8 @@ pub(super) struct Amounts<'a, T: Scalar, const D: usize, P: Phase<T, D>> {
     pub(super) stresses: &'a [SMatrix<T, D, D>],
     pub(super) data: &'a [P::Particle],
     pub(super) phase: &'a P,
+    /// Masses of the particles' liquid, where they are not to be those of their volumes now.
+    pub(super) liquid_masses: Option<&'a [T]>,
     /// Taken from stress and pressure.
     pub(super) even: EvenLoad<T>,
 }
@@ -44,6 +46,7 @@ where
             velocities: &self.velocities[..count],
             stresses: &self.stresses[..count],
             data: &self.data[..count],
+            liquid_masses: self.liquid_masses.map(|masses| &masses[..count]),
             ..self
         }
     }
@@ -60,11 +63,14 @@ where
         let mut scalars = [mass; S];
         let mut liquid_mass = zero;
         if S > 1 || C > 1 {
-            liquid_mass = group.amounts_of(
-                k,
-                #[inline(always)]
-                |p| self.phase.liquid_mass(self.volumes[p]),
-            );
+            liquid_mass = match self.liquid_masses {
+                Some(masses) => group.amounts::<FULL, T, K>(k, masses),
+                None => group.amounts_of(
+                    k,
+                    #[inline(always)]
+                    |p| self.phase.liquid_mass(self.volumes[p]),
+                ),
+            };
         }
         if S > 1 {
             scalars[1] = liquid_mass;
@@ -368,7 +374,7 @@ impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usi
 pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C: usize, const G: usize>(
     (basis, grid, bins): (&B, &Grid<T, D>, &Bins<D>),
     particles: &Particles<T, D, N, P::Particle>,
-    (phase, even): (&P, EvenLoad<T>),
+    (phase, even, liquid_masses): (&P, EvenLoad<T>, Option<&[T]>),
     spans: &mut Spans<T, D>,
     mut targets: Targets<'_, T, D, S, C, G>,
 ) where
@@ -387,7 +393,7 @@ pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C:
         (&particles.position[..], bins.cells()),
         (&particles.mass[..], &particles.volume[..]),
         (&particles.velocity[..], &particles.stress[..]),
-        &particles.phase[..],
+        (&particles.phase[..], Maybe(liquid_masses)),
         store.windows(spans, &mut targets),
     );
     each_span(parallel, span, work, &|_,
@@ -395,7 +401,7 @@ pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C:
         places,
         (masses, volumes),
         (velocities, stresses),
-        data,
+        (data, liquid),
         windows,
     )| {
         let mut sums = InSpan::new(windows);
@@ -406,6 +412,7 @@ pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C:
             stresses,
             data,
             phase,
+            liquid_masses: liquid.0,
             even,
         };
         if const { G > 0 } {

@@ -59,7 +59,9 @@ where
     for _ in 0..100 {
         stepper.step(1e-5, &walls).unwrap();
     }
-    let particles = stepper.particles();
+    let found = *stepper.diagnostics();
+    // In the order in which they were given.
+    let particles = stepper.into_setup().particles;
     let row = (0..40).map(|p| {
         let liquid = particles.phase[p];
         [
@@ -69,7 +71,6 @@ where
             liquid.pressure,
         ]
     });
-    let found = stepper.diagnostics();
     let kept = [found.conservation, found.liquid_conservation.unwrap()];
     let worst = kept.map(|c| c.mass.max(c.momentum_scaled));
     (row.collect(), worst[0].max(worst[1]))

@@ -58,6 +58,11 @@ impl<T: Scalar, const D: usize> Joint<T, D> {
         }
     }
 
+    /// Mass of each particle's liquid at the step's start.
+    pub(in super::super) fn liquid_masses(&self) -> &[T] {
+        &self.liquid_mass
+    }
+
     /// For so many particles and the DOFs of `basis`.
     pub(in super::super) fn new<B: BasisFamily<T, D>>(
         basis: &B,
