@@ -62,13 +62,14 @@ where
 }
 
 /// Positions, velocities, stresses, and velocities and pressures of the liquid after some steps on so many threads.
-fn run(mut body: Box<dyn Simulation<2>>, threads: usize) -> Vec<f64> {
+fn run(body: impl FnOnce() -> Box<dyn Simulation<2>> + Send, threads: usize) -> Vec<f64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap().install(|| {
         let walls = Face::all::<2>().fold(Forcing::none(), |forcing, face| {
             forcing.with_face(face, FaceCondition::roller(face.axis))
         });
         let forcing = walls.with_body_force(vector![0.0, -10.0]);
+        let mut body = body();
         for _ in 0..STEPS {
             body.step(2e-4, &forcing).unwrap();
         }
@@ -91,14 +92,14 @@ where
     B: BasisFamily<f64, 2> + Send + 'static,
     R: Reconstruction<f64, 2> + Clone + Send + 'static,
 {
-    let one = run(body(&basis, &reconstruction, mass, false), 1);
+    let one = run(|| body(&basis, &reconstruction, mass, false), 1);
     for threads in [2, 3] {
-        let more = run(body(&basis, &reconstruction, mass, false), threads);
+        let more = run(|| body(&basis, &reconstruction, mass, false), threads);
         let same = one.iter().zip(&more).all(|(a, b)| a.to_bits() == b.to_bits());
         assert!(same, "{mass:?}, {threads} threads");
     }
     // Numbers of a kind lie together, and each particle's come back in the order in which it was given.
-    let shuffled = run(body(&basis, &reconstruction, mass, true), 2);
+    let shuffled = run(|| body(&basis, &reconstruction, mass, true), 2);
     let count = one.len() / 8;
     for p in 0..count {
         let q = p * 10_007 % count;
