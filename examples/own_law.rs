@@ -59,7 +59,7 @@ impl<T: Scalar> Default for LogStrain<T> {
     }
 }
 
-/// Pulls a bar at its free end by 1 % of the modulus and returns its mean strain when the oscillation has the
+/// Corrections a bar at its free end by 1 % of the modulus and returns its mean strain when the oscillation has the
 /// same number of halves behind and before it: the static strain, about 1 %.
 pub fn run() -> Result<f64, Box<dyn Error>> {
     let (length, density, modulus): (f64, f64, f64) = (1.0, 1e3, 1e5);

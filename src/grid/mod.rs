@@ -179,7 +179,7 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
     /// Whether `x` lies in `cell`, and so far from its edges that no rounding can matter: the common case, at a fraction of
     /// the cost of [`Grid::locate`].
     #[inline(always)]
-    pub fn clearly_holds(&self, cell: &Cell<D>, x: &SVector<T, D>) -> bool {
+    pub fn strictly_contains(&self, cell: &Cell<D>, x: &SVector<T, D>) -> bool {
         (0..D).all(|axis| {
             let unit = self.unit_coordinate(axis, cell[axis], x[axis]);
             let doubt = self.doubt[axis];
@@ -189,7 +189,7 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
 
     /// The same of four points of which lane by lane `x` are the coordinates along each axis: whether the cell clearly holds all.
     #[inline(always)]
-    pub(crate) fn clearly_holds_all<K: Packs<T, N>, const N: usize>(
+    pub(crate) fn strictly_contains_all<K: Packs<T, N>, const N: usize>(
         &self,
         k: K,
         cell: &Cell<D>,
@@ -214,7 +214,7 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
 
     /// Moves `x` a few roundings off an inner edge of its `cell`. Just there functions vanish whose slopes do not: a DOF that
     /// nothing else reaches would have no mass, hence no velocity, and yet strain the particle.
-    pub(crate) fn keep_off_edges(&self, cell: &Cell<D>, x: &mut SVector<T, D>) {
+    pub(crate) fn nudge_off_edges(&self, cell: &Cell<D>, x: &mut SVector<T, D>) {
         for axis in 0..D {
             let (i, gap) = (cell[axis] as usize, self.doubt[axis] * self.cell_size[axis]);
             if i > 0 {
@@ -307,7 +307,7 @@ mod tests {
                 let middle = edge + 0.4 * (max - min) / n as f64;
                 for x in [edge.next_down(), edge, edge.next_up(), middle] {
                     for cell in [i.saturating_sub(1), i.min(n - 1)].map(|c| [c as u32]) {
-                        if grid.clearly_holds(&cell, &vector![x]) {
+                        if grid.strictly_contains(&cell, &vector![x]) {
                             clear += 1;
                             assert_eq!(grid.locate(&vector![x]), Some(cell), "{min} {max} {n}: {x}");
                         }
@@ -337,10 +337,10 @@ mod tests {
                 while x < high {
                     let found = grid.locate(&vector![x]).unwrap();
                     for cell in [i.saturating_sub(1), i, (i + 1).min(n - 1)].map(|c| [c as u32]) {
-                        let holds = grid.clearly_holds(&cell, &vector![x]);
+                        let holds = grid.strictly_contains(&cell, &vector![x]);
                         assert!(!holds || found == cell, "{min} {max} {n}: {x}");
                     }
-                    clear += usize::from(grid.clearly_holds(&found, &vector![x]));
+                    clear += usize::from(grid.strictly_contains(&found, &vector![x]));
                     all += 1;
                     x = x.next_up();
                 }

@@ -255,7 +255,7 @@ pub(crate) fn relocate<T: Scalar, const D: usize>(
     cell: &mut Cell<D>,
     x: &SVector<T, D>,
 ) -> Option<bool> {
-    if grid.clearly_holds(cell, x) {
+    if grid.strictly_contains(cell, x) {
         return Some(false);
     }
     let found = grid.locate(x)?;
@@ -264,18 +264,18 @@ pub(crate) fn relocate<T: Scalar, const D: usize>(
     Some(crossed)
 }
 
-/// The same for a particle that moves on: from an edge it is moved off ([`Grid::keep_off_edges`]).
+/// The same for a particle that moves on: from an edge it is moved off ([`Grid::nudge_off_edges`]).
 #[inline(always)]
 pub(crate) fn settle<T: Scalar, const D: usize>(
     grid: &Grid<T, D>,
     cell: &mut Cell<D>,
     x: &mut SVector<T, D>,
 ) -> Option<bool> {
-    if grid.clearly_holds(cell, x) {
+    if grid.strictly_contains(cell, x) {
         return Some(false);
     }
     let crossed = relocate(grid, cell, x)?;
-    grid.keep_off_edges(cell, x);
+    grid.nudge_off_edges(cell, x);
     Some(crossed)
 }
 

@@ -10,7 +10,7 @@ mod start;
 pub(crate) use bins::settle;
 pub use bins::{Bins, Outside};
 pub use lattice::{Lattice, lattice};
-pub(crate) use movable::{Material, Movables, Places};
+pub(crate) use movable::{Material, ParticleViews, Places};
 
 use nalgebra::{SMatrix, SVector};
 
@@ -108,8 +108,8 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
     }
 
     /// What moves and deforms of each particle; their states take so many numbers each.
-    pub(crate) fn movable(&mut self, numbers_each: usize) -> Movables<'_, T, D, S, P> {
-        Movables {
+    pub(crate) fn movable(&mut self, numbers_each: usize) -> ParticleViews<'_, T, D, S, P> {
+        ParticleViews {
             position: &mut self.position,
             displacement: &mut self.displacement,
             stress: &mut self.stress,

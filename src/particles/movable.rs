@@ -6,7 +6,7 @@ use crate::grid::Cell;
 use crate::parallel::Sliced;
 
 /// What moves and deforms of particles.
-pub(crate) struct Movables<'a, T, const D: usize, S, P> {
+pub(crate) struct ParticleViews<'a, T, const D: usize, S, P> {
     pub(super) position: &'a mut [SVector<T, D>],
     pub(super) displacement: &'a mut [SVector<T, D>],
     pub(super) stress: &'a mut [SMatrix<T, D, D>],
@@ -52,7 +52,7 @@ impl<T, const D: usize, S, P> AllMaterial<'_, T, D, S, P> {
     }
 }
 
-impl<T, const D: usize, S, P> Movables<'_, T, D, S, P> {
+impl<T, const D: usize, S, P> ParticleViews<'_, T, D, S, P> {
     /// Where they are, in these cells, and how far they have come since the start; and what they are made of.
     pub(crate) fn places_and_material<'b>(
         &'b mut self,
@@ -74,7 +74,7 @@ impl<T, const D: usize, S, P> Movables<'_, T, D, S, P> {
     }
 }
 
-impl<T: Send, const D: usize, S: Send, P: Send> Sliced for Movables<'_, T, D, S, P> {
+impl<T: Send, const D: usize, S: Send, P: Send> Sliced for ParticleViews<'_, T, D, S, P> {
     fn items(&self) -> usize {
         self.position.len()
     }

@@ -104,7 +104,7 @@ impl<'a, T: Scalar, const D: usize> Cloud<'a, T, D> {
 
 /// The occupied cells at the given places, four at most and one at least; the last one again in the place of others.
 #[inline(always)]
-pub(crate) fn four_cells<T: Scalar, const D: usize>(
+pub(crate) fn batch_of_cells<T: Scalar, const D: usize>(
     cloud: &Cloud<'_, T, D>,
     places: Range<usize>,
 ) -> [(usize, Cell<D>); LANES] {
@@ -179,18 +179,18 @@ impl<T, const D: usize> Point<T, D> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filling {
     /// They fill it, as far as its functions can tell.
-    Full,
+    Filled,
     /// They fill a part, or see all functions but squares.
-    Part,
+    PartlyFilled,
     /// They do not, but better cells are near.
-    Few,
+    Underdetermined,
     /// Neither do those near it.
-    Alone,
+    Isolated,
 }
 
 /// Parts of a cell that are crossed in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossed<T> {
+pub struct CourantNumbers<T> {
     /// By a wave.
     pub wave: T,
     /// By the particles.
@@ -224,20 +224,20 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     const PARTICLE_MATRIX: bool = false;
 
     /// Whether each cell can be streamed alone, so that threads may share them ([`Reconstruction::integrate_cells`]).
-    const BY_CELLS: bool = false;
+    const CELLWISE: bool = false;
 
     /// Whether [`Reconstruction::relax`] does anything.
     const RELAXES: bool = false;
 
-    /// Whether four cells can be streamed at once without [`Reconstruction::prepare`] ([`Reconstruction::integrate_four`]).
-    const BY_FOUR: bool = false;
+    /// Whether four cells can be streamed at once without [`Reconstruction::prepare`] ([`Reconstruction::integrate_batch`]).
+    const BATCHED: bool = false;
 
-    /// Numbers of each of four cells that [`Reconstruction::integrate_four`] keeps where it does not conserve, and takes up again
+    /// Numbers of each of four cells that [`Reconstruction::integrate_batch`] keeps where it does not conserve, and takes up again
     /// where it does.
     const KEPT: usize = 0;
 
-    /// Whether [`Reconstruction::integrate_four`] wants what [`Reconstruction::prepare`] and [`Reconstruction::take_in_field`] took in.
-    const KEEPS_FITS: bool = false;
+    /// Whether [`Reconstruction::integrate_batch`] wants what [`Reconstruction::prepare`] and [`Reconstruction::fit_field`] took in.
+    const NON_LOCAL: bool = false;
 
     /// Takes in the geometry. Every field streamed until the next call shares it.
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>);
@@ -261,16 +261,16 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     );
 
     /// A liquid flows: its pressure will be reconstructed with the stress.
-    fn expect_liquid(&mut self) {}
+    fn configure_for_saturated(&mut self) {}
 
-    /// Takes in the field that [`Reconstruction::integrate_cells`] or [`Reconstruction::integrate_four`] will stream next, where a
+    /// Takes in the field that [`Reconstruction::integrate_cells`] or [`Reconstruction::integrate_batch`] will stream next, where a
     /// cell's fit wants the values of its neighbours.
-    fn take_in_field<Q: Field<T>>(&mut self, _cloud: &Cloud<'_, T, D>, _value: &(impl Values<T, Q> + Sync)) {
-        const { assert!(!Self::KEEPS_FITS, "KEEPS_FITS wants an own `take_in_field`") };
+    fn fit_field<Q: Field<T>>(&mut self, _cloud: &Cloud<'_, T, D>, _value: &(impl Values<T, Q> + Sync)) {
+        const { assert!(!Self::NON_LOCAL, "NON_LOCAL wants an own `fit_field`") };
     }
 
     /// What [`Reconstruction::integrate`] streams in the given `cells`, places in the list of occupied ones. Only asked where
-    /// [`Reconstruction::BY_CELLS`].
+    /// [`Reconstruction::CELLWISE`].
     fn integrate_cells<Q: Field<T>>(
         &self,
         _cloud: &Cloud<'_, T, D>,
@@ -278,7 +278,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         _value: impl Fn(usize) -> Q,
         _sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        const { assert!(!Self::BY_CELLS, "BY_CELLS wants an own `integrate_cells`") };
+        const { assert!(!Self::CELLWISE, "CELLWISE wants an own `integrate_cells`") };
     }
 
     /// What [`Reconstruction::integrate_conserved`] streams in the given `cells`, likewise, where not the
@@ -292,24 +292,24 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     ) {
         const {
             assert!(
-                !Self::BY_CELLS || Self::AMOUNTS_AT_PARTICLES,
-                "BY_CELLS wants an own `integrate_conserved_cells`"
+                !Self::CELLWISE || Self::AMOUNTS_AT_PARTICLES,
+                "CELLWISE wants an own `integrate_conserved_cells`"
             )
         };
     }
 
-    /// Coordinates in a cell, each in `[-1, 1]`, of the points along an axis whose products [`Reconstruction::integrate_four`]
+    /// Coordinates in a cell, each in `[-1, 1]`, of the points along an axis whose products [`Reconstruction::integrate_batch`]
     /// streams, axis 0 fastest; none if it cannot as it is set up.
     fn line(&self) -> impl Iterator<Item = T> {
-        const { assert!(!Self::BY_FOUR, "BY_FOUR wants an own `line`") };
+        const { assert!(!Self::BATCHED, "BATCHED wants an own `line`") };
         std::iter::empty()
     }
 
     /// What [`Reconstruction::integrate_conserved`] streams, if `conserve`, or else [`Reconstruction::integrate`], in up to four
     /// `cells`, places in the list of occupied ones from a multiple of four on: one cell in each lane, the number of the point and the components of the
-    /// value. `value` is that of a particle: in the first case its density. Only asked where [`Reconstruction::BY_FOUR`]; returns in
-    /// which cells it failed (those that a surface cuts always), so that they must be streamed by [`Reconstruction::integrate_hard`].
-    fn integrate_four<K: Packs<T>, Q: Field<T>>(
+    /// value. `value` is that of a particle: in the first case its density. Only asked where [`Reconstruction::BATCHED`]; returns in
+    /// which cells it failed (those that a surface cuts always), so that they must be streamed by [`Reconstruction::integrate_single`].
+    fn integrate_batch<K: Packs<T>, Q: Field<T>>(
         &self,
         _k: K,
         _cloud: &Cloud<'_, T, D>,
@@ -319,13 +319,13 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         _value: &impl Values<T, Q>,
         _sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> Four {
-        const { assert!(!Self::BY_FOUR, "BY_FOUR wants an own `integrate_four`") };
+        const { assert!(!Self::BATCHED, "BATCHED wants an own `integrate_batch`") };
         Four::default()
     }
 
     /// The same in one cell that is given by its number, point by point; returns whether it was fitted with the full set of
     /// functions.
-    fn integrate_hard<Q: Field<T>>(
+    fn integrate_single<Q: Field<T>>(
         &self,
         _cloud: &Cloud<'_, T, D>,
         _cell: usize,
@@ -333,7 +333,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         _value: &dyn Fn(usize) -> Q,
         _sink: &mut dyn FnMut(&Point<T, D>, Q),
     ) -> bool {
-        const { assert!(!Self::BY_FOUR, "BY_FOUR wants an own `integrate_hard`") };
+        const { assert!(!Self::BATCHED, "BATCHED wants an own `integrate_single`") };
         true
     }
 
@@ -345,7 +345,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         &mut self,
         _cloud: &Cloud<'_, T, D>,
         _weights: Option<&[T]>,
-        _crossed: &[Crossed<T>],
+        _crossed: &[CourantNumbers<T>],
         _values: &mut [Q],
     ) {
         const { assert!(!Self::RELAXES, "RELAXES wants an own `relax`") };
@@ -362,7 +362,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
                 "PARTICLE_MATRIX wants an own `filling`"
             )
         };
-        Filling::Full
+        Filling::Filled
     }
 
     /// Cells that hold particles but, at the last [`Reconstruction::prepare`], could not be fitted with
@@ -403,8 +403,8 @@ pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction
         "PARTICLE_MATRIX wants AMOUNTS_AT_PARTICLES"
     );
     // Four at once are prepared by nobody, and are asked for only where cells are streamed alone.
-    assert!(!R::BY_FOUR || R::BY_CELLS, "BY_FOUR wants BY_CELLS");
-    assert!(!R::KEEPS_FITS || R::BY_CELLS, "KEEPS_FITS wants BY_CELLS");
+    assert!(!R::BATCHED || R::CELLWISE, "BATCHED wants CELLWISE");
+    assert!(!R::NON_LOCAL || R::CELLWISE, "NON_LOCAL wants CELLWISE");
 }
 
 /// A constant without its method does not compile:
@@ -421,7 +421,7 @@ pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction
 /// impl Reconstruction<f64, 1> for Forgetful {
 ///     const FIELDS_AT_PARTICLES: bool = true;
 ///     const AMOUNTS_AT_PARTICLES: bool = true;
-///     const BY_CELLS: bool = true; // but no `integrate_cells`
+///     const CELLWISE: bool = true; // but no `integrate_cells`
 ///
 ///     fn prepare(&mut self, _cloud: &Cloud<'_, f64, 1>) {}
 ///

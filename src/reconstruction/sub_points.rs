@@ -125,7 +125,7 @@ impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {
             // Most domains lie within one cell: then no sub-point need be looked up.
             let within = [-half, half]
                 .iter()
-                .all(|&end| cloud.grid.clearly_holds(&own, &(x + extents * end)));
+                .all(|&end| cloud.grid.strictly_contains(&own, &(x + extents * end)));
             let mut k = [0; D];
             loop {
                 let mut position = SVector::from_fn(|a, _| x[a] + self.place::<T>(k[a]) * extents[a]);

@@ -22,7 +22,7 @@ use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each};
 use crate::taylor::{
-    CellFit, FEW_COMPONENTS, FourFits, FourSums, Gram, MOST_COMPONENTS, Rights, SharedFactor, are_few,
+    BatchSums, CellFit, FEW_COMPONENTS, FourFits, Gram, MOST_COMPONENTS, Rights, SharedFactor, are_few,
     default_tolerance, kept, taylor_functions,
 };
 
@@ -298,7 +298,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         fit_about_mean(cell.fits, cloud, cell.number, value, mean)
     }
 
-    /// [`Reconstruction::integrate_four`] of a field of not more than `C` components.
+    /// [`Reconstruction::integrate_batch`] of a field of not more than `C` components.
     #[inline(always)]
     fn integrate_few<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
@@ -394,7 +394,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         k: K,
         group: &CellGroup<D>,
         kept: Kept<'_, T>,
-        sums: &FourSums<K::V, NB, C>,
+        sums: &BatchSums<K::V, NB, C>,
     ) -> FourFits<K::V, NB, C> {
         let shared = SharedFactor::new::<T, K, D>(k, &sums.gram, &group.counts, self.tolerance);
         if !kept.numbers.is_empty() {
@@ -425,7 +425,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         let Some(factor) = shared else {
             return self.fit_conserved_anew::<K, Q, C>(k, (cloud, cells), value);
         };
-        let mut sums: FourSums<K::V, NB, C> =
+        let mut sums: BatchSums<K::V, NB, C> =
             group.sums::<ConservedValues, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes);
         for n in 1..NB {
             sums.gram[n][0] = factor.with_constant[n];
@@ -448,7 +448,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
             #[inline(always)]
             move || {
                 let group = CellGroup::new(cloud, cells.clone());
-                let mut sums: FourSums<K::V, NB, C> =
+                let mut sums: BatchSums<K::V, NB, C> =
                     group.sums::<Conserved, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes);
                 let mean = sums.take_out_mean::<T, K>(k, cloud.grid.cell_volume(), Q::COMPONENTS);
                 let mut fits = sums.fit::<T, K, D>(k, 1, &group.counts, self.tolerance, Q::COMPONENTS);
@@ -568,7 +568,7 @@ fn fit_about_mean<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor<T, D, NB> {
     const FIELDS_AT_PARTICLES: bool = false;
     const AMOUNTS_AT_PARTICLES: bool = false;
-    const BY_CELLS: bool = true;
+    const CELLWISE: bool = true;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
         // One slot for each cell there is, so that a later step never has to allocate.
@@ -641,7 +641,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         self.stream_conserved(cloud, cells, &amount, sink);
     }
 
-    const BY_FOUR: bool = true;
+    const BATCHED: bool = true;
     const KEPT: usize = kept::<NB>();
 
     fn line(&self) -> impl Iterator<Item = T> {
@@ -655,7 +655,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
     }
 
     #[inline(always)]
-    fn integrate_four<K: Packs<T>, Q: Field<T>>(
+    fn integrate_batch<K: Packs<T>, Q: Field<T>>(
         &self,
         k: K,
         cloud: &Cloud<'_, T, D>,
@@ -676,7 +676,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
 
     #[cold]
     #[inline(never)]
-    fn integrate_hard<Q: Field<T>>(
+    fn integrate_single<Q: Field<T>>(
         &self,
         cloud: &Cloud<'_, T, D>,
         cell: usize,

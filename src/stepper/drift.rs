@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 
-use super::spans::{Fault, Flaw, Moved, Spans};
+use super::spans::{Fault, InvalidState, Moved, Spans};
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
 use crate::law::LawSweep;
@@ -61,7 +61,7 @@ pub(super) fn move_particles<T, const D: usize, B, L, P, const C: usize>(
 }
 
 /// What became of a span's particles, the first of which has the number `first`. Of particles at fault the first one is told.
-fn moved<T>(first: usize, outcome: &Outcome, flaw: Option<(usize, Flaw<T>)>) -> Moved<T> {
+fn moved<T>(first: usize, outcome: &Outcome, flaw: Option<(usize, InvalidState<T>)>) -> Moved<T> {
     let fault = match (flaw, outcome.left) {
         (Some((p, flaw)), left) if left.is_none_or(|left| p <= left) => {
             Some(Fault::Material(first + p, flaw))
@@ -82,7 +82,7 @@ fn deform<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>, const C:
     dt: T,
     increments: [&[SMatrix<T, D, D>]; C],
     material: Material<'_, T, D, L::Number, P::Particle>,
-) -> Option<(usize, Flaw<T>)> {
+) -> Option<(usize, InvalidState<T>)> {
     let Matter { law, phase } = *matter;
     if P::FLOWS {
         let of_both = increments[0].iter().zip(increments[C - 1]);
@@ -101,7 +101,7 @@ fn deform<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>, const C:
     if known && sound && finite {
         return None;
     }
-    first_flaw(law, phase, &material)
+    first_invalid_state(law, phase, &material)
 }
 
 // A function of its own, because a compiler knows of what a function is given that slices are apart from each other.
@@ -119,7 +119,7 @@ fn stretch_all<T: Scalar, const D: usize>(increments: &[SMatrix<T, D, D>], volum
     let mut sound = true;
     for (increment, volume) in increments.iter().zip(volumes) {
         *volume *= determinant(&(SMatrix::identity() + increment));
-        sound &= is_sound(*volume);
+        sound &= is_valid_volume(*volume);
     }
     sound
 }
@@ -131,18 +131,18 @@ fn have_pressures<T: Scalar, const D: usize, P: Phase<T, D>>(phase: &P, data: &[
 
 /// Whether a volume is a positive number, and finite.
 #[inline(always)]
-fn is_sound<T: Scalar>(volume: T) -> bool {
+fn is_valid_volume<T: Scalar>(volume: T) -> bool {
     (volume > T::zero()) & (volume * T::zero()).is_zero()
 }
 
 /// What is wrong with the first particle with which something is.
 #[cold]
 #[inline(never)]
-fn first_flaw<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
+fn first_invalid_state<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
     law: &L,
     phase: &P,
     material: &Material<'_, T, D, L::Number, P::Particle>,
-) -> Option<(usize, Flaw<T>)> {
+) -> Option<(usize, InvalidState<T>)> {
     let bodies = material.stress.iter().zip(&*material.volume);
     bodies.enumerate().find_map(|(k, (stress, &volume))| {
         if P::FLOWS {
@@ -151,14 +151,14 @@ fn first_flaw<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
                 .get(k)
                 .map_or_else(T::zero, |data| phase.liquid(data).pressure);
             if !pressure.is_finite() {
-                return Some((k, Flaw::Pressure(pressure)));
+                return Some((k, InvalidState::Pressure(pressure)));
             }
         }
         if !law.knows(stress, law.of(material.state, k)) {
-            return Some((k, Flaw::Stress(stress[(0, 0)])));
+            return Some((k, InvalidState::Stress(stress[(0, 0)])));
         }
-        let unsound = law.large_strain() && !is_sound(volume);
-        unsound.then_some((k, Flaw::Volume(volume)))
+        let unsound = law.large_strain() && !is_valid_volume(volume);
+        unsound.then_some((k, InvalidState::Volume(volume)))
     })
 }
 

@@ -39,7 +39,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
     ) where
         Stress: Integrand<T, D, 0, 0, G, 0>,
     {
-        self.reconstruction.take_in_field(&self.cloud, &stress);
+        self.reconstruction.fit_field(&self.cloud, &stress);
         self.integrate::<Stress, 0, 0, G>(&stress, targets);
     }
 
@@ -63,7 +63,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
     {
         let (basis, cloud) = (self.basis, &self.cloud);
         let amount = |p: usize| amount_of(value.at(p), I::CONSERVED, cloud.volumes[p]);
-        if !R::BY_CELLS {
+        if !R::CELLWISE {
             let mut sums = InSpan::whole(targets);
             let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, |dof, sum| sums.add(dof, sum));
             return match I::CONSERVED {
@@ -164,7 +164,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             forces: [],
         };
         let mut targets: Targets<'_, T, D, 0, C, 0> = targets;
-        if !R::BY_CELLS {
+        if !R::CELLWISE {
             rows.iter_mut().for_each(|rows| rows.fill(T::zero()));
             let mut sums = InSpan::whole(targets);
             let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(

@@ -25,7 +25,7 @@ where
     /// Puts a penalty on the jumps across those faces between occupied cells at which one of them is not full, beyond one dimension.
     pub(super) fn tie_partly_filled_cells(&mut self) {
         let (grid, bins, reconstruction) = (&self.grid, &self.bins, &self.reconstruction);
-        let is_full = |place: usize| reconstruction.filling(place) == Filling::Full;
+        let is_full = |place: usize| reconstruction.filling(place) == Filling::Filled;
         let full_mass = |place: usize| density(&self.particles, bins, place) * grid.cell_volume();
         let share = share::<T, D>(self.basis.degree());
         for place in 0..bins.occupied().len() {
@@ -54,7 +54,7 @@ pub(super) fn lump_undetermined_cells<T, const D: usize, B, R>(
     R: Reconstruction<T, D>,
 {
     let occupied = bins.occupied().iter().enumerate();
-    for (_, &number) in occupied.filter(|&(place, _)| reconstruction.filling(place) == Filling::Alone) {
+    for (_, &number) in occupied.filter(|&(place, _)| reconstruction.filling(place) == Filling::Isolated) {
         let cell = grid.cell(number as usize);
         let x = grid.centre(&cell);
         basis.for_each_at_fixed_point(grid, &cell, &x, |dof, _, _| matrix.lump(dof));

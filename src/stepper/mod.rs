@@ -66,7 +66,7 @@ use crate::mass::VelocityMass;
 use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, Crossed, Cut, Reconstruction};
+use crate::reconstruction::{Cloud, CourantNumbers, Cut, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, packs_serve};
 use crate::transfer;
@@ -132,7 +132,7 @@ where
     /// Whether a particle came near the border of the grid's window.
     strayed: bool,
     /// Part of each occupied cell that a wave crosses in this step; empty where nothing relaxes.
-    crossed: Vec<Crossed<T>>,
+    crossed: Vec<CourantNumbers<T>>,
     /// Stresses as the relaxation would have them; empty but for laws that remember.
     relaxed: Vec<SMatrix<T, D, D>>,
     balance: balance::Balance<T, D>,
@@ -203,7 +203,7 @@ where
             }
         })?;
         for (cell, x) in bins.cells().iter().zip(&mut particles.position) {
-            grid.keep_off_edges(cell, x);
+            grid.nudge_off_edges(cell, x);
         }
         let grid = match B::FOLLOWS_WINDOW {
             true => window::lay(grid, bins.cells()),
@@ -259,7 +259,7 @@ where
             diagnostics: Diagnostics::new(mass, P::FLOWS),
         };
         if P::FLOWS {
-            stepper.reconstruction.expect_liquid();
+            stepper.reconstruction.configure_for_saturated();
         }
         stepper.allocate_dofs();
         stepper.allocate();
@@ -288,7 +288,7 @@ where
         self.prepare();
         let dofs = self.dofs.mass.len();
         let each = if P::FLOWS { [SCALARS, VECTORS] } else { [1, 1] };
-        self.spans.allocate(each, R::BY_CELLS, dofs);
+        self.spans.allocate(each, R::CELLWISE, dofs);
         if self.by_four() {
             let cells = self.particles.len().min(self.grid.cell_count());
             self.spans.kept.reserve_exact(cells.div_ceil(LANES) * R::KEPT);
@@ -394,7 +394,7 @@ where
         if fits {
             self.cut_cells();
         }
-        if self.by_four() && !R::KEEPS_FITS {
+        if self.by_four() && !R::NON_LOCAL {
             return;
         }
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
@@ -538,7 +538,7 @@ where
             + self.contact.bytes()
             + size_of::<SurfacePoint<T>>() * self.surface.capacity()
             + size_of::<Cut<T>>() * self.cuts.capacity()
-            + size_of::<Crossed<T>>() * self.crossed.capacity()
+            + size_of::<CourantNumbers<T>>() * self.crossed.capacity()
             + size_of::<SMatrix<T, D, D>>() * self.relaxed.capacity()
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()
             + self.joint.bytes()

@@ -71,7 +71,7 @@ where
                 position: values(&positions[place]),
             })?;
         for (cell, x) in self.bins.cells().iter().zip(&mut self.particles.position) {
-            self.grid.keep_off_edges(cell, x);
+            self.grid.nudge_off_edges(cell, x);
         }
         self.order.note_crossings(expected);
         self.spans.forget();

@@ -7,7 +7,7 @@ use crate::basis::BasisFamily;
 use crate::law::{Bodies, LawSweep};
 use crate::parallel::{CELLS, each_span, many_threads};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, Crossed, Reconstruction};
+use crate::reconstruction::{Cloud, CourantNumbers, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::with_features;
 use crate::tensor::determinant;
@@ -28,7 +28,7 @@ where
     /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing has used it
     /// since), the velocity after its update and before it is mapped.
     pub(super) fn relax(&mut self, dt: T) {
-        self.measure_crossings(dt);
+        self.measure_courant_numbers(dt);
         let (crossed, particles) = (&self.crossed[..], &mut self.particles);
         let cloud = Cloud {
             grid: &self.grid,
@@ -88,10 +88,10 @@ where
     /// Parts of each occupied cell that are crossed in a step, in root mean square over its particles: by waves along the shortest
     /// side, for they run every way, and by the particles, who run along their own. All particles of a cell count alike, so that
     /// neither their order nor a mirror matters.
-    pub(super) fn measure_crossings(&mut self, dt: T) {
+    pub(super) fn measure_courant_numbers(&mut self, dt: T) {
         let occupied = self.bins.occupied();
         let mut crossed = std::mem::take(&mut self.crossed);
-        let nothing = Crossed {
+        let nothing = CourantNumbers {
             wave: T::zero(),
             motion: T::zero(),
         };
@@ -103,7 +103,7 @@ where
                 #[inline(always)]
                 || {
                     for (crossed, &cell) in crossed.iter_mut().zip(cells) {
-                        *crossed = self.crossed_in(cell as usize, dt);
+                        *crossed = self.courant_numbers_in(cell as usize, dt);
                     }
                 },
             );
@@ -113,7 +113,7 @@ where
 
     /// Parts of the cell with a number that are crossed in a step.
     #[inline(always)]
-    fn crossed_in(&self, cell: usize, dt: T) -> Crossed<T> {
+    fn courant_numbers_in(&self, cell: usize, dt: T) -> CourantNumbers<T> {
         let inverse = self.grid.inverse_cell_size();
         let particles = self.bins.particles_in(cell);
         // Also where a law has no wave any more: there is then nothing to relax.
@@ -129,7 +129,7 @@ where
             }
         }
         let count = T::count(particles.len().max(1));
-        Crossed {
+        CourantNumbers {
             wave: (waves / count).sqrt() * inverse.max() * dt,
             motion: (squares / count).sqrt() * dt,
         }

@@ -100,14 +100,14 @@ impl<T> Default for Moved<T> {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Fault<T> {
     /// Its material makes no sense any more.
-    Material(usize, Flaw<T>),
+    Material(usize, InvalidState<T>),
     /// It left the grid.
     Left(usize),
 }
 
 /// What can go wrong with the material of a particle.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Flaw<T> {
+pub(super) enum InvalidState<T> {
     /// The volume is no longer a positive number.
     Volume(T),
     /// The law has no meaning at this stress.
@@ -116,7 +116,7 @@ pub(super) enum Flaw<T> {
     Pressure(T),
 }
 
-impl<T: Scalar> Flaw<T> {
+impl<T: Scalar> InvalidState<T> {
     /// As an error; `allowed` is what the law asks of a stress.
     pub(super) fn error(self, step: usize, particle: usize, allowed: &'static str) -> StepError {
         match self {

@@ -9,7 +9,7 @@ use super::drift::{Matter, move_particles};
 use super::fitted::{DensitiesOfBoth, Fitted, StressAndPressure, densities};
 use super::forcing::Forcing;
 use super::kick::kick_particles;
-use super::liquid::EvenLoad;
+use super::liquid::UniformLoad;
 use super::spans::{Fault, Totals};
 use super::sums::{Targets, first, sum_particles};
 use super::velocity::divide_by_mass;
@@ -68,7 +68,7 @@ where
                 .close(dt, &forcing.body_force, after, &mut self.diagnostics);
         }
         self.solve_velocities(dt, forcing);
-        self.meet_walls(forcing);
+        self.apply_wall_contact(forcing);
     }
 
     /// Positions, strains and stresses of the particles.
@@ -93,7 +93,7 @@ where
 
     /// Masses and forces of the DOFs; with a liquid that flows drag and velocities at the step's start too.
     fn p2g(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        let even = self.even_load(forcing);
+        let even = self.uniform_load(forcing);
         if const { P::FLOWS } {
             self.find_seals(forcing);
         }
@@ -116,7 +116,7 @@ where
     }
 
     /// Sums over the particles.
-    fn sum<const S: usize, const C: usize, const G: usize>(&mut self, even: EvenLoad<T>) {
+    fn sum<const S: usize, const C: usize, const G: usize>(&mut self, even: UniformLoad<T>) {
         let targets: Targets<'_, T, D, S, C, G> =
             Targets::new(&mut self.dofs, &mut self.liquid, &mut self.drag);
         sum_particles(
@@ -149,7 +149,7 @@ where
 
     /// Forces from fits of the stress.
     #[inline(never)]
-    fn integrate_forces(&mut self, even: EvenLoad<T>) {
+    fn integrate_forces(&mut self, even: UniformLoad<T>) {
         let (effective, data, phase) = (&self.particles.stress[..], &self.particles.phase[..], &self.phase);
         let by_four = self.by_four();
         let fitted = Fitted {
@@ -173,7 +173,7 @@ where
                 Targets::<T, D, 0, 0, 1>::of_forces(first(forces)),
             );
         }
-        if by_four && !R::KEEPS_FITS {
+        if by_four && !R::NON_LOCAL {
             let reduced = self.spans.reduced.iter().sum();
             self.diagnostics.record_reduced(reduced);
         }
@@ -182,8 +182,8 @@ where
     /// Loads of surfaces, and body forces that differ from particle to particle.
     fn add_loads(&mut self, forcing: &Forcing<T, D>) {
         if const { P::FLOWS } {
-            let even = self.even_load(forcing);
-            self.add_uneven_loads(&even, forcing);
+            let even = self.uniform_load(forcing);
+            self.add_surface_loads(&even, forcing);
         } else {
             self.add_tractions(forcing);
         }
@@ -251,7 +251,7 @@ where
         if const { R::PARTICLE_MATRIX } {
             self.assemble_particle_matrix();
         }
-        self.sum::<1, 0, 0>(EvenLoad::none());
+        self.sum::<1, 0, 0>(UniformLoad::none());
     }
 
     /// Momenta and masses of the DOFs of the solid alone, from the velocities as they are.
@@ -274,7 +274,7 @@ where
         sum_particles(
             (&self.basis, &self.grid, &self.bins),
             &self.particles,
-            (&self.phase, EvenLoad::none(), liquid_masses),
+            (&self.phase, UniformLoad::none(), liquid_masses),
             &mut self.spans,
             momenta,
         );

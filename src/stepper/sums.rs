@@ -6,7 +6,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Dofs;
-use super::liquid::EvenLoad;
+use super::liquid::UniformLoad;
 use super::spans::{Spans, Store, share};
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
@@ -29,7 +29,7 @@ pub(super) struct Amounts<'a, T: Scalar, const D: usize, P: Phase<T, D>> {
     /// Masses of the particles' liquid, where they are not to be those of their volumes now.
     pub(super) liquid_masses: Option<&'a [T]>,
     /// Taken from stress and pressure.
-    pub(super) even: EvenLoad<T>,
+    pub(super) even: UniformLoad<T>,
 }
 
 impl<T, const D: usize, P, const S: usize, const C: usize, const G: usize> Contribution<T, D, S, C, G>
@@ -374,7 +374,7 @@ impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usi
 pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C: usize, const G: usize>(
     (basis, grid, bins): (&B, &Grid<T, D>, &Bins<D>),
     particles: &Particles<T, D, N, P::Particle>,
-    (phase, even, liquid_masses): (&P, EvenLoad<T>, Option<&[T]>),
+    (phase, even, liquid_masses): (&P, UniformLoad<T>, Option<&[T]>),
     spans: &mut Spans<T, D>,
     mut targets: Targets<'_, T, D, S, C, G>,
 ) where

@@ -52,7 +52,7 @@ pub(crate) fn taylor_lanes<T: Scalar, K: Lanes<T>, const D: usize, const NB: usi
 
 /// Sums over the points of four cells: of products of the functions, and of functions times the components of a field.
 #[derive(Clone, Copy)]
-pub(crate) struct FourSums<V, const NB: usize, const C: usize = MOST_COMPONENTS> {
+pub(crate) struct BatchSums<V, const NB: usize, const C: usize = MOST_COMPONENTS> {
     /// The lower half.
     pub(crate) gram: Products<V, NB>,
     pub(crate) right: Rights<V, NB, C>,
@@ -89,7 +89,7 @@ pub(crate) struct FourFits<V, const NB: usize, const C: usize> {
     pub(crate) are_full: bool,
 }
 
-impl<V: Copy, const NB: usize, const C: usize> FourSums<V, NB, C> {
+impl<V: Copy, const NB: usize, const C: usize> BatchSums<V, NB, C> {
     #[inline(always)]
     pub(crate) fn new<T: Scalar, K: Lanes<T, V = V>>(k: K) -> Self {
         let zero = k.splat(T::zero());

@@ -19,7 +19,7 @@ pub use basis::taylor_functions;
 pub use fit::{CellFit, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE_IN_SPACE, Gram, default_tolerance};
 pub use four::MOST_COMPONENTS;
 pub(crate) use four::{
-    FEW_COMPONENTS, Factor, FourFits, FourSums, Products, Rights, are_few, factorise, taylor_lanes,
+    BatchSums, FEW_COMPONENTS, Factor, FourFits, Products, Rights, are_few, factorise, taylor_lanes,
 };
 pub(crate) use shared::{SharedFactor, kept};
 pub(crate) use shift::{shift_lanes, shift_sums};

@@ -155,11 +155,11 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
 mod tests {
     use super::*;
     use crate::simd::{Four, Plain};
-    use crate::taylor::{FourSums, taylor_lanes};
+    use crate::taylor::{BatchSums, taylor_lanes};
 
     /// Sums over points that lie in no order, another count in each cell.
-    fn sums<const D: usize, const NB: usize>(counts: &[usize; LANES]) -> FourSums<Four<f64>, NB, 2> {
-        let mut sums = FourSums::new::<f64, _>(Plain);
+    fn sums<const D: usize, const NB: usize>(counts: &[usize; LANES]) -> BatchSums<Four<f64>, NB, 2> {
+        let mut sums = BatchSums::new::<f64, _>(Plain);
         let number = |seed: usize| ((seed * seed + 7 * seed + 3) % 101) as f64 / 50.5 - 1.0;
         for p in 0..*counts.iter().max().unwrap() {
             let s = std::array::from_fn(|a| Four(std::array::from_fn(|l| number(31 * p + 7 * a + 3 * l))));

@@ -110,7 +110,7 @@ pub enum Property {
     ConstantGradient,
     /// `integrate_cells` and `integrate_conserved_cells` stream what all cells together do.
     CellsStreamTheSame,
-    /// `integrate_four` and `integrate_hard` stream what one cell after another does.
+    /// `integrate_batch` and `integrate_single` stream what one cell after another does.
     FourStreamTheSame,
 }
 

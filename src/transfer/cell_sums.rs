@@ -16,7 +16,7 @@ use crate::scalar::Scalar;
 const AT_HAND: usize = 64;
 
 /// Sums of the DOFs of a cell, in the order in which the basis visits them: the same one for every point of the cell.
-pub(super) struct CellSums<'a, T, const D: usize, B, const S: usize, const C: usize, const G: usize> {
+pub(super) struct StencilSums<'a, T, const D: usize, B, const S: usize, const C: usize, const G: usize> {
     basis: &'a B,
     grid: &'a Grid<T, D>,
     cell: Option<(&'a Cell<D>, &'a SVector<T, D>)>,
@@ -24,7 +24,7 @@ pub(super) struct CellSums<'a, T, const D: usize, B, const S: usize, const C: us
 }
 
 impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, const S: usize, const C: usize, const G: usize>
-    CellSums<'a, T, D, B, S, C, G>
+    StencilSums<'a, T, D, B, S, C, G>
 {
     #[inline(always)]
     pub(super) fn new(basis: &'a B, grid: &'a Grid<T, D>) -> Self {

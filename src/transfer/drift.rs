@@ -138,7 +138,7 @@ pub(crate) fn drift<T: Scalar, const D: usize, B: BasisFamily<T, D>, const C: us
                 k, &sweep, *motion, p, block, places, outcome
             ));
         } else {
-            fill_one_by_one(basis, grid, motion, p, &mut block, &mut places, &mut outcome);
+            fill_by_points(basis, grid, motion, p, &mut block, &mut places, &mut outcome);
         }
         let increments = each(|q| &block.increments[q][..block.count]);
         sound = deform(p, increments);
@@ -245,7 +245,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
             |c| before[c] + path[c],
         );
         group.put::<FULL, T, K, D>(k, displacements, &displacement);
-        if !self.grid.clearly_holds_all(k, cell, &moved) {
+        if !self.grid.strictly_contains_all(k, cell, &moved) {
             settle_group(self.grid, group, positions, cells, outcome);
         }
         each(
@@ -281,7 +281,7 @@ fn settle_group<T: Scalar, const D: usize, const N: usize>(
 }
 
 /// The same for a basis that is no product.
-fn fill_one_by_one<T: Scalar, const D: usize, B: BasisFamily<T, D>, const C: usize>(
+fn fill_by_points<T: Scalar, const D: usize, B: BasisFamily<T, D>, const C: usize>(
     basis: &B,
     grid: &Grid<T, D>,
     motion: &Drift<'_, T, D, C>,

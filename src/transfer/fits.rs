@@ -11,7 +11,7 @@ use super::sums::{Parts, Sum, Sums};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::field::{Field, MassMomentum, Pair, Symmetric, symmetric_component};
 use crate::grid::Cell;
-use crate::reconstruction::{Cloud, Kept, Point, Reconstruction, Values, four_cells};
+use crate::reconstruction::{Cloud, Kept, Point, Reconstruction, Values, batch_of_cells};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Number, Packs, dispatch_vectors, each, in_lanes, inlined};
 use crate::taylor::MOST_COMPONENTS;
@@ -208,9 +208,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         let mut numbers = kept.chunks_exact_mut(R::KEPT.max(1));
         for first in cells.clone().step_by(LANES) {
             let places = first..cells.end.min(first + LANES);
-            let four = four_cells(cloud, places.clone()).map(|(_, cell)| cell);
+            let four = batch_of_cells(cloud, places.clone()).map(|(_, cell)| cell);
             functions.take(k, self, &four, units);
-            let outcome = reconstruction.integrate_four::<K, I::Field>(
+            let outcome = reconstruction.integrate_batch::<K, I::Field>(
                 k,
                 cloud,
                 places.clone(),
@@ -233,9 +233,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
             );
             reduced += outcome.reduced;
             if const { D == 1 } && places.len() == LANES && follow(&four) && outcome.hard == [false; LANES] {
-                sums.spread_line(k, self, &four[0], sink);
+                sums.scatter_line(k, self, &four[0], sink);
                 for q in 0..W {
-                    pairs[q].spread_line(k, self, &four[0], &mut |i, j, mass| matrix(q, i, j, mass));
+                    pairs[q].scatter_line(k, self, &four[0], &mut |i, j, mass| matrix(q, i, j, mass));
                 }
                 continue;
             }
@@ -253,7 +253,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 );
             }
             if outcome.hard.contains(&true) {
-                reduced += self.integrate_hard::<M, R, I, S, C, G, W>(
+                reduced += self.integrate_single::<M, R, I, S, C, G, W>(
                     fits,
                     places,
                     &outcome.hard,
@@ -268,7 +268,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
 
     /// Cells at `places` that are `hard`, point by point; returns how many were fitted without the full set of functions.
     #[inline(never)]
-    fn integrate_hard<
+    fn integrate_single<
         M: BasisFamily<T, D>,
         R: Reconstruction<T, D>,
         I: Integrand<T, D, S, C, G, W>,
@@ -311,7 +311,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 });
             };
             let cell = occupied[place] as usize;
-            let full = fits.reconstruction.integrate_hard(
+            let full = fits.reconstruction.integrate_single(
                 fits.cloud,
                 cell,
                 I::CONSERVED,

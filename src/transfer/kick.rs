@@ -5,7 +5,7 @@
 use nalgebra::SVector;
 
 use super::Sweep;
-use super::cell_sums::CellSums;
+use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::sums::{Parts, Sum, Sums};
 use crate::basis::BasisFamily;
@@ -76,7 +76,7 @@ pub(crate) fn kick<
         ));
     }
     let mut totals = [Momentum::zero(); C];
-    let mut sums = CellSums::new(basis, grid);
+    let mut sums = StencilSums::new(basis, grid);
     for (p, (x, cell)) in positions.iter().zip(cells).enumerate() {
         let mut a = [[T::zero(); D]; C];
         basis.for_each(grid, cell, x, |i, phi, _| {

@@ -37,7 +37,7 @@ impl<T: Scalar> Line<T> {
 impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Sums<V, D, S, C, G> {
     /// Hands `sink(dof, sum)` the sums of the cell in each lane, the first of which is `cell`, and starts again.
     #[inline(always)]
-    pub(super) fn spread_line<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, V = V>>(
+    pub(super) fn scatter_line<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, V = V>>(
         &mut self,
         k: K,
         sweep: &Sweep<'_, T, D, B>,
@@ -82,7 +82,7 @@ impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Su
 impl<V: Copy, const D: usize> PairSums<V, D> {
     /// The same of pairs: `matrix(i, j, sum)`, `j <= i`.
     #[inline(always)]
-    pub(super) fn spread_line<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, V = V>>(
+    pub(super) fn scatter_line<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, V = V>>(
         &mut self,
         k: K,
         sweep: &Sweep<'_, T, D, B>,

@@ -52,7 +52,7 @@ pub(crate) const fn in_packs<T: Scalar, const D: usize, B: BasisFamily<T, D>>() 
 
 /// Whether fits can be integrated over four cells at a time.
 pub(crate) const fn fit<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>>() -> bool {
-    R::BY_FOUR
+    R::BATCHED
         && match B::AT_FIXED_POINTS {
             FixedPoints::Alike => in_packs::<T, D, B>(),
             FixedPoints::Linear => true,

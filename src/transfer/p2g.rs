@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use super::Sweep;
-use super::cell_sums::CellSums;
+use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::sums::Sums;
 pub(crate) use super::sums::{Parts, Sum};
@@ -54,7 +54,7 @@ pub(crate) fn p2g<
             k, &sweep, positions, cells, what, sink
         ));
     }
-    let mut sums = CellSums::new(basis, grid);
+    let mut sums = StencilSums::new(basis, grid);
     let slopes = [T::one(); D];
     for (p, (x, cell)) in positions.iter().zip(cells).enumerate() {
         let group = Group { first: p, count: 1 };

@@ -179,7 +179,7 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
         }
         self.sums[..count].fill(zero);
         let first = sweep.first_dof(&cell);
-        sweep.each_pair(
+        sweep.for_each_pair(
             #[inline(always)]
             |i, j, number| matrix(first + i, first + j, totals[number]),
         );
@@ -200,7 +200,7 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
         for (first, cell) in first.iter_mut().zip(cells) {
             *first = sweep.first_dof(cell);
         }
-        sweep.each_pair(
+        sweep.for_each_pair(
             #[inline(always)]
             |i, j, number| {
                 let sums = k.array(self.sums[number]);
@@ -222,7 +222,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     /// Calls `f(i, j, number)` for each pair `j <= i` of a cell's DOFs, counted from the cell's first one, with the number of its
     /// sum.
     #[inline(always)]
-    fn each_pair(&self, mut f: impl FnMut(usize, usize, usize)) {
+    fn for_each_pair(&self, mut f: impl FnMut(usize, usize, usize)) {
         for row in 0..Self::ROWS {
             let (start, k) = self.row(row);
             for other in 0..=row {

@@ -21,7 +21,7 @@ use materialpoint::stepper::Simulation;
 pub(super) const ENERGY_SAMPLES: usize = 1000;
 
 /// A run to march through.
-pub(super) struct Journey<'a> {
+pub(super) struct RunPlan<'a> {
     pub(super) scene: &'a Scene,
     /// How often the energy is sampled.
     pub(super) samples: usize,
@@ -87,7 +87,7 @@ struct Due {
     checkpoint: bool,
 }
 
-impl Journey<'_> {
+impl RunPlan<'_> {
     fn due(&self, done: usize, steps: usize) -> Due {
         let output = &self.scene.output;
         let every = |period: usize| period > 0 && done.is_multiple_of(period);
@@ -105,7 +105,7 @@ impl Journey<'_> {
 /// Steps `simulation` to the end, writing particles and checkpoints when the scene asks for it, and sampling the energy.
 /// Steps that are renewed change `schedule`.
 pub(super) fn march<const D: usize>(
-    journey: &Journey<'_>,
+    journey: &RunPlan<'_>,
     schedule: &mut Schedule,
     simulation: &mut dyn Simulation<D>,
     frames: &mut Frames<'_>,
@@ -114,7 +114,7 @@ pub(super) fn march<const D: usize>(
 where
     Scene: InSpace<D>,
 {
-    let Journey { scene, from, .. } = journey;
+    let RunPlan { scene, from, .. } = journey;
     let mut march = March {
         energy: from.energy,
         ..March::default()

@@ -37,7 +37,7 @@ use std::path::{Path, PathBuf};
 use checkpoint::Checkpoint;
 use frames::{Frames, Moment};
 use loads::forcing;
-use march::{ENERGY_SAMPLES, Journey, Milestone, march};
+use march::{ENERGY_SAMPLES, Milestone, RunPlan, march};
 use particle_fields::Snapshot;
 use schedule::Schedule;
 
@@ -173,7 +173,7 @@ where
     }
     let removed = frames.clear(resumed);
     let missing = frames.warning();
-    let journey = Journey {
+    let journey = RunPlan {
         scene,
         samples: ENERGY_SAMPLES,
         from,
@@ -269,7 +269,7 @@ where
 {
     let (mut schedule, mut simulation) = begin(scene)?;
     let mut frames = Frames::new(scene, None, Vec::new());
-    let journey = Journey {
+    let journey = RunPlan {
         scene,
         samples: 1,
         from: Milestone::default(),

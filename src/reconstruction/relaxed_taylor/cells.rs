@@ -15,11 +15,11 @@ use super::four::KeptSums;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// With three others.
-    Four,
+    Batch,
     /// Alone, because a surface cuts it or its particles leave it in doubt what they tell.
-    Alone,
+    Fallback,
     /// Not at all: material ends within it on any slant, beyond one dimension, or two bodies end within it along one axis, or there is
-    /// no fit to speak of ([`Filling::Alone`]). Its particles are the points of its force, and are left as they are.
+    /// no fit to speak of ([`Filling::Isolated`]). Its particles are the points of its force, and are left as they are.
     Open,
 }
 
@@ -38,14 +38,14 @@ impl RelaxedCell {
     pub(super) fn none() -> Self {
         Self {
             kind: Kind::Open,
-            filling: Filling::Few,
+            filling: Filling::Underdetermined,
             is_full: false,
         }
     }
 
     /// Leaves it to its particles.
     pub(super) fn leave_alone(&mut self) {
-        (self.kind, self.filling) = (Kind::Open, Filling::Alone);
+        (self.kind, self.filling) = (Kind::Open, Filling::Isolated);
     }
 
     /// The cell with number `cell`, whose own fit is full or in doubt, and which has no neighbours on its `open` sides.
@@ -60,9 +60,9 @@ impl RelaxedCell {
         let is_cut = !cloud.cuts.is_empty() && cloud.is_cut(&cloud.grid.cell(cell));
         if !is_cut && *open == [[false; 2]; D] && !own_is_hard {
             return Self {
-                kind: Kind::Four,
+                kind: Kind::Batch,
                 filling: match own_is_full {
-                    true => Filling::Full,
+                    true => Filling::Filled,
                     false => seen_by_particles(cloud, cell, degree),
                 },
                 is_full: own_is_full,
@@ -87,8 +87,8 @@ impl RelaxedCell {
         };
         let kind = match (is_open, own_is_hard || patch != whole) {
             (true, _) => Kind::Open,
-            (false, true) => Kind::Alone,
-            (false, false) => Kind::Four,
+            (false, true) => Kind::Fallback,
+            (false, false) => Kind::Batch,
         };
         let is_full = if patch != whole || own_is_hard {
             own_fit::<T, D, NB>(cloud, cell, &patch, tolerance).functions() == NB
@@ -97,9 +97,9 @@ impl RelaxedCell {
         };
         let ends_within = D > 1 && (is_open || patch != whole);
         let filling = match (ends_within, is_full) {
-            (true, true) => Filling::Part,
-            (true, false) => Filling::Few,
-            (false, true) => Filling::Full,
+            (true, true) => Filling::PartlyFilled,
+            (true, false) => Filling::Underdetermined,
+            (false, true) => Filling::Filled,
             (false, false) => seen_by_particles(cloud, cell, degree),
         };
         Self {

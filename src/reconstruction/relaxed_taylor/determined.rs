@@ -13,8 +13,8 @@ const SEEN: f64 = 0.02;
 /// Functions in three dimensions: eight multilinear ones and three squares.
 const MOST: usize = 11;
 
-/// [`Filling::Few`] where the particles do not tell the multilinear functions apart, two along each axis, which every basis wants;
-/// [`Filling::Part`] where they do not see squares beyond one axis, which a basis of higher degree wants there: rows of two
+/// [`Filling::Underdetermined`] where the particles do not tell the multilinear functions apart, two along each axis, which every basis wants;
+/// [`Filling::PartlyFilled`] where they do not see squares beyond one axis, which a basis of higher degree wants there: rows of two
 /// particles along each axis determine its masses, but so weakly that noise grows. Along one axis they bear it.
 pub(super) fn seen_by_particles<T: Scalar, const D: usize>(
     cloud: &Cloud<'_, T, D>,
@@ -24,10 +24,10 @@ pub(super) fn seen_by_particles<T: Scalar, const D: usize>(
     let (multilinear, count) = (1_usize << D, cloud.bins.count_in(cell));
     let functions = multilinear + if D > 1 && degree > 1 { D } else { 0 };
     if functions > MOST {
-        return Filling::Full;
+        return Filling::Filled;
     }
     if count < multilinear {
-        return Filling::Few;
+        return Filling::Underdetermined;
     }
     let patch = Patch::whole(cloud.grid, cell);
     let mut gram = [[T::zero(); MOST]; MOST];
@@ -40,9 +40,9 @@ pub(super) fn seen_by_particles<T: Scalar, const D: usize>(
         }
     }
     match large_pivots(&mut gram, functions, T::lit(SEEN) * T::count(count)) {
-        found if found < multilinear => Filling::Few,
-        found if found < functions => Filling::Part,
-        _ => Filling::Full,
+        found if found < multilinear => Filling::Underdetermined,
+        found if found < functions => Filling::PartlyFilled,
+        _ => Filling::Filled,
     }
 }
 
@@ -103,21 +103,25 @@ mod tests {
     fn each_axis_wants_two_particles_and_three_where_squares_count() {
         for size in [[1.0, 1.0], [8.0, 1.0], [1.0, 8.0]] {
             for per_cell in [[1, 1], [1, 4], [4, 1], [1, 9]] {
-                assert_eq!(seen(per_cell, size, 1), Filling::Few, "{per_cell:?}");
-                assert_eq!(seen(per_cell, size, 2), Filling::Few, "{per_cell:?}");
+                assert_eq!(seen(per_cell, size, 1), Filling::Underdetermined, "{per_cell:?}");
+                assert_eq!(seen(per_cell, size, 2), Filling::Underdetermined, "{per_cell:?}");
             }
             for per_cell in [[2, 2], [2, 4], [8, 2]] {
-                assert_eq!(seen(per_cell, size, 1), Filling::Full, "{per_cell:?}");
-                assert_eq!(seen(per_cell, size, 2), Filling::Part, "{per_cell:?}");
+                assert_eq!(seen(per_cell, size, 1), Filling::Filled, "{per_cell:?}");
+                assert_eq!(seen(per_cell, size, 2), Filling::PartlyFilled, "{per_cell:?}");
             }
-            assert_eq!(seen([3, 3], size, 2), Filling::Full);
+            assert_eq!(seen([3, 3], size, 2), Filling::Filled);
         }
     }
 
     #[test]
     fn along_one_axis_two_particles_apart_do() {
         let grid = Grid::<f64, 1>::new(vector![0.0], vector![1.0], [1]).unwrap();
-        for (apart, expected) in [(0.0, Filling::Few), (0.04, Filling::Few), (0.3, Filling::Full)] {
+        for (apart, expected) in [
+            (0.0, Filling::Underdetermined),
+            (0.04, Filling::Underdetermined),
+            (0.3, Filling::Filled),
+        ] {
             let positions = [vector![0.4], vector![0.4 + apart]];
             let bins = Bins::new(&grid, &positions).unwrap();
             let cloud = Cloud::new(&grid, &bins, &positions, &[0.5, 0.5]).unwrap();

@@ -205,7 +205,7 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
     /// Adds to the wide fits the constants with which their slopes leave the means of the cells' fits alone, wherever in the
     /// cell its particles are: a slope that changes turns about the middle of the cell, and not of the particles.
     #[inline(always)]
-    pub(super) fn turn_about_the_middle<K: Packs<T>, const C: usize>(
+    pub(super) fn keep_means_of_cells<K: Packs<T>, const C: usize>(
         &self,
         k: K,
         group: usize,

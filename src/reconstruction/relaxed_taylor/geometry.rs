@@ -64,13 +64,13 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             self.leave_short_runs(cloud);
         }
         for place in 0..self.cells.len() {
-            if self.cells[place].filling == Filling::Part && self.sees_squares_beside(cloud, place) {
-                self.cells[place].filling = Filling::Full;
+            if self.cells[place].filling == Filling::PartlyFilled && self.sees_squares_beside(cloud, place) {
+                self.cells[place].filling = Filling::Filled;
             }
             let is_alone = match self.cells[place].filling {
-                Filling::Few => !self.is_held(cloud, place),
-                Filling::Part => self.is_thin(cloud, place),
-                Filling::Full | Filling::Alone => false,
+                Filling::Underdetermined => !self.is_held(cloud, place),
+                Filling::PartlyFilled => self.is_thin(cloud, place),
+                Filling::Filled | Filling::Isolated => false,
             };
             if is_alone {
                 self.cells[place].leave_alone();
@@ -94,7 +94,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
 
     /// Whether particles determine a cell next to this one or, beyond one dimension, where ties reach further, next to that.
     fn is_held(&self, cloud: &Cloud<'_, T, D>, place: usize) -> bool {
-        let holds = |place: usize| matches!(self.cells[place].filling, Filling::Full | Filling::Part);
+        let holds =
+            |place: usize| matches!(self.cells[place].filling, Filling::Filled | Filling::PartlyFilled);
         let (bins, grid) = (cloud.bins, cloud.grid);
         let mut held = false;
         bins.for_each_neighbour(grid, place, |_, _, other| {
@@ -110,7 +111,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     /// particles do: they share functions, and a tie would only smooth what is determined.
     fn sees_squares_beside(&self, cloud: &Cloud<'_, T, D>, place: usize) -> bool {
         let mut seen = false;
-        if self.cells[place].kind == Kind::Four {
+        if self.cells[place].kind == Kind::Batch {
             let neighbours = |_, _, other: usize| seen |= self.cells[other].is_full;
             cloud.bins.for_each_neighbour(cloud.grid, place, neighbours);
         }
@@ -121,7 +122,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     fn is_thin(&self, cloud: &Cloud<'_, T, D>, place: usize) -> bool {
         let open = self.fits[place / LANES].open_sides(place % LANES);
         open.contains(&[true; 2])
-            && seen_by_particles(cloud, cloud.bins.occupied()[place] as usize, self.degree) != Filling::Full
+            && seen_by_particles(cloud, cloud.bins.occupied()[place] as usize, self.degree) != Filling::Filled
     }
 
     #[inline(always)]

@@ -15,7 +15,7 @@ mod tests;
 use std::ops::Range;
 
 use super::gauss::GaussRule;
-use super::{Cloud, Crossed, Filling, Four, Kept, Point, Reconstruction, Shepard, Stored, Values};
+use super::{Cloud, CourantNumbers, Filling, Four, Kept, Point, Reconstruction, Shepard, Stored, Values};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::parallel::CELLS;
@@ -24,7 +24,7 @@ use crate::simd::{LANES, Packs, dispatch};
 use crate::taylor::{FEW_COMPONENTS, MOST_COMPONENTS, are_few, default_tolerance};
 use cells::{Kind, RelaxedCell};
 use four::{FourFits, KeptProducts};
-use pull::Pulls;
+use pull::Corrections;
 
 pub use relaxation::Relaxation;
 
@@ -82,7 +82,7 @@ pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {
     fits: Vec<FourFits<T, D, NB>>,
     /// Sums of the functions times the components of a field ([`KeptSums`]).
     sums: Vec<[T; LANES]>,
-    pulls: Pulls<T>,
+    pulls: Corrections<T>,
     /// Most scalars of a field.
     components: usize,
     reduced: usize,
@@ -117,7 +117,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             grams: Vec::new(),
             fits: Vec::new(),
             sums: Vec::new(),
-            pulls: Pulls::none(),
+            pulls: Corrections::none(),
             components: D * D,
             reduced: 0,
         }
@@ -159,11 +159,11 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     const FIELDS_AT_PARTICLES: bool = false;
     const AMOUNTS_AT_PARTICLES: bool = true;
     const PARTICLE_MATRIX: bool = true;
-    const BY_CELLS: bool = true;
+    const CELLWISE: bool = true;
     const RELAXES: bool = true;
 
-    const BY_FOUR: bool = true;
-    const KEEPS_FITS: bool = true;
+    const BATCHED: bool = true;
+    const NON_LOCAL: bool = true;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
         self.reserve(cloud.grid.cell_count());
@@ -182,18 +182,18 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     ) {
         // Not what a step calls: that streams cells, and allocates nothing.
         let values: Vec<Q> = (0..cloud.positions.len()).map(value).collect();
-        self.take_in_field(cloud, &Stored(&values));
+        self.fit_field(cloud, &Stored(&values));
         self.integrate_cells(cloud, 0..self.cells.len(), |p| values[p], sink);
     }
 
-    fn expect_liquid(&mut self) {
+    fn configure_for_saturated(&mut self) {
         self.components = D * D + 1;
         if let Some(relaxation) = self.with_liquid {
             self.relaxation = relaxation;
         }
     }
 
-    fn take_in_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Values<T, Q> + Sync)) {
+    fn fit_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Values<T, Q> + Sync)) {
         self.sum_field(cloud, value);
     }
 
@@ -223,7 +223,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     }
 
     #[inline(always)]
-    fn integrate_four<K: Packs<T>, Q: Field<T>>(
+    fn integrate_batch<K: Packs<T>, Q: Field<T>>(
         &self,
         k: K,
         cloud: &Cloud<'_, T, D>,
@@ -245,14 +245,14 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         }
         let mut four = Four::default();
         for (hard, cell) in four.hard.iter_mut().zip(&self.cells[cells]) {
-            *hard = cell.kind != Kind::Four;
+            *hard = cell.kind != Kind::Batch;
         }
         four
     }
 
     #[cold]
     #[inline(never)]
-    fn integrate_hard<Q: Field<T>>(
+    fn integrate_single<Q: Field<T>>(
         &self,
         cloud: &Cloud<'_, T, D>,
         cell: usize,
@@ -270,7 +270,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         &mut self,
         cloud: &Cloud<'_, T, D>,
         weights: Option<&[T]>,
-        crossed: &[Crossed<T>],
+        crossed: &[CourantNumbers<T>],
         values: &mut [Q],
     ) {
         match weights {
@@ -280,7 +280,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     }
 
     fn filling(&self, place: usize) -> Filling {
-        self.cells.get(place).map_or(Filling::Full, |cell| cell.filling)
+        self.cells.get(place).map_or(Filling::Filled, |cell| cell.filling)
     }
 
     fn reduced_cells(&self) -> usize {

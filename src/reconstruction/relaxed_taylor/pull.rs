@@ -13,13 +13,13 @@ use crate::taylor::{Rights, taylor_lanes};
 
 /// For each occupied cell the polynomial and the share by which its particles are moved: `value += p(x) - share value`.
 #[derive(Clone, Debug)]
-pub(super) struct Pulls<T> {
+pub(super) struct Corrections<T> {
     /// Coefficients in the frame of the whole cell, function by function.
     coefficients: Vec<T>,
     shares: Vec<T>,
 }
 
-impl<T: Scalar> Pulls<T> {
+impl<T: Scalar> Corrections<T> {
     /// Of no cell.
     pub(super) fn none() -> Self {
         Self {
@@ -40,12 +40,12 @@ impl<T: Scalar> Pulls<T> {
     }
 
     /// Rows of so many cells, none of which pulls, four cells together.
-    pub(super) fn rows(&mut self, cells: usize, each: usize) -> PullRows<'_, T> {
+    pub(super) fn rows(&mut self, cells: usize, each: usize) -> CorrectionRows<'_, T> {
         // Coefficients of cells that do not pull are not looked at.
         self.coefficients.resize(cells * each, T::zero());
         self.shares.clear();
         self.shares.resize(cells, T::zero());
-        PullRows {
+        CorrectionRows {
             coefficients: &mut self.coefficients,
             shares: &mut self.shares,
             each,
@@ -197,14 +197,14 @@ fn frame<T: Scalar, K: Packs<T>, const D: usize>(
 }
 
 /// What is kept of some cells, to be filled.
-pub(super) struct PullRows<'a, T> {
+pub(super) struct CorrectionRows<'a, T> {
     coefficients: &'a mut [T],
     shares: &'a mut [T],
     /// Coefficients of a cell.
     each: usize,
 }
 
-impl<T: Send> Sliced for PullRows<'_, T> {
+impl<T: Send> Sliced for CorrectionRows<'_, T> {
     fn items(&self) -> usize {
         self.shares.len().div_ceil(LANES)
     }
@@ -222,7 +222,7 @@ impl<T: Send> Sliced for PullRows<'_, T> {
     }
 }
 
-impl<'a, T> PullRows<'a, T> {
+impl<'a, T> CorrectionRows<'a, T> {
     /// Coefficients and shares of four cells after four.
     pub(super) fn groups(self) -> impl Iterator<Item = (&'a mut [T], &'a mut [T])> {
         let coefficients = self.coefficients.chunks_mut(LANES * self.each);
@@ -232,7 +232,7 @@ impl<'a, T> PullRows<'a, T> {
 
 /// Puts the coefficients of four cells, `shares` of which are positive, where they are kept.
 #[inline(always)]
-pub(super) fn keep_pulls<T: Scalar, K: Packs<T>, const NB: usize, const C: usize>(
+pub(super) fn keep_corrections<T: Scalar, K: Packs<T>, const NB: usize, const C: usize>(
     k: K,
     rights: &Rights<K::V, NB, C>,
     components: usize,

@@ -2,13 +2,13 @@
 
 use super::cells::{Kind, own_fit, wide_coefficients};
 use super::four::{NONE, middle};
-use super::pull::{PullRows, Pulls, keep_pulls};
+use super::pull::{CorrectionRows, Corrections, keep_corrections};
 use super::stream::difference;
 use super::{ALIKE, GROUPS, RelaxedTaylor};
 use crate::field::Field;
 use crate::parallel::each_span;
 use crate::reconstruction::taylor::{CellGroup, Weighted, local};
-use crate::reconstruction::{Cloud, Crossed, Patch, Reconstruction, Stored};
+use crate::reconstruction::{Cloud, CourantNumbers, Patch, Reconstruction, Stored};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Number, Packs, dispatch};
 use crate::taylor::{CellFit, FEW_COMPONENTS, MOST_COMPONENTS, Rights, are_few, factorise};
@@ -18,26 +18,26 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     pub(super) fn relax_towards_both<Q: Field<T>>(
         &mut self,
         cloud: &Cloud<'_, T, D>,
-        crossed: &[Crossed<T>],
+        crossed: &[CourantNumbers<T>],
         values: &mut [Q],
     ) {
         let taken: &[Q] = values;
-        self.take_in_field(cloud, &Stored(taken));
-        let mut pulls = std::mem::replace(&mut self.pulls, Pulls::none());
+        self.fit_field(cloud, &Stored(taken));
+        let mut pulls = std::mem::replace(&mut self.pulls, Corrections::none());
         let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
         let this = &*self;
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
             if const { are_few::<T, Q, D>() } {
                 dispatch!(T, |k| this
-                    .pull_to_both_in::<_, Q, FEW_COMPONENTS>(k, crossed, first, rows));
+                    .correct_towards_both::<_, Q, FEW_COMPONENTS>(k, crossed, first, rows));
             } else {
                 dispatch!(T, |k| this
-                    .pull_to_both_in::<_, Q, MOST_COMPONENTS>(k, crossed, first, rows));
+                    .correct_towards_both::<_, Q, MOST_COMPONENTS>(k, crossed, first, rows));
             }
         });
         pulls.apply::<Q, D, NB>(cloud, values);
         for place in 0..self.cells.len() {
-            if self.cells[place].kind == Kind::Alone {
+            if self.cells[place].kind == Kind::Fallback {
                 self.relax_alone(cloud, place, crossed, values);
             }
         }
@@ -45,12 +45,12 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     }
 
     #[inline(always)]
-    fn pull_to_both_in<K: Packs<T>, Q: Field<T>, const C: usize>(
+    fn correct_towards_both<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
         k: K,
-        crossed: &[Crossed<T>],
+        crossed: &[CourantNumbers<T>],
         first: usize,
-        rows: PullRows<'_, T>,
+        rows: CorrectionRows<'_, T>,
     ) {
         let sums = self.kept_sums::<Q>();
         let zero = k.splat(T::zero());
@@ -59,7 +59,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             let fits = &self.fits[group];
             let (mut own, mut neighbours) = ([T::zero(); LANES], [T::zero(); LANES]);
             for (l, place) in self.places(group).enumerate() {
-                if self.cells[place].kind == Kind::Four {
+                if self.cells[place].kind == Kind::Batch {
                     [own[l], neighbours[l]] = self.relaxation.shares(crossed[place]);
                     if !fits.wide_is_full()[l] || !self.are_alike(crossed, place) {
                         neighbours[l] = T::zero();
@@ -69,7 +69,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             let seen = fits.own_coefficients(k, &sums.load::<K, NB, C>(k, group), Q::COMPONENTS);
             let mut wide = fits.wide_coefficients::<K, C>(k, group, &sums);
             if self.keeps_means {
-                fits.turn_about_the_middle::<K, C>(k, group, &self.grams[group], &sums, &mut wide);
+                fits.keep_means_of_cells::<K, C>(k, group, &self.grams[group], &sums, &mut wide);
             }
             let mut pull: Rights<K::V, NB, C> = [[zero; C]; NB];
             let shares = [k.new(own), k.new(neighbours)];
@@ -79,12 +79,12 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                 }
             }
             let shares = k.array(shares[0] + shares[1]);
-            keep_pulls::<T, K, NB, C>(k, &pull, Q::COMPONENTS, shares, row);
+            keep_corrections::<T, K, NB, C>(k, &pull, Q::COMPONENTS, shares, row);
         }
     }
 
     /// Whether waves are about as fast in the neighbours of a cell as in itself: stress may jump where the material changes.
-    fn are_alike(&self, crossed: &[Crossed<T>], place: usize) -> bool {
+    fn are_alike(&self, crossed: &[CourantNumbers<T>], place: usize) -> bool {
         let [mut slowest, mut fastest] = [crossed[place].wave; 2];
         for other in self.fits[place / LANES].neighbours.iter().flatten() {
             let other = other[place % LANES];
@@ -103,7 +103,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         &self,
         cloud: &Cloud<'_, T, D>,
         place: usize,
-        crossed: &[Crossed<T>],
+        crossed: &[CourantNumbers<T>],
         values: &mut [Q],
     ) {
         let cell = cloud.bins.occupied()[place] as usize;
@@ -117,7 +117,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             None
         };
         if let (true, Some(wide)) = (self.keeps_means, &mut wide) {
-            turn_about_the_middle(cloud, [&whole, &patch], &own_fit, values, wide);
+            keep_means_of_cells(cloud, [&whole, &patch], &own_fit, values, wide);
         }
         let [own, neighbours] = self.relaxation.shares(crossed[place]);
         for (p, s) in local(cloud, cell, &patch) {
@@ -135,27 +135,27 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         &mut self,
         cloud: &Cloud<'_, T, D>,
         weights: &[T],
-        crossed: &[Crossed<T>],
+        crossed: &[CourantNumbers<T>],
         values: &mut [Q],
     ) {
         let taken: &[Q] = values;
-        let mut pulls = std::mem::replace(&mut self.pulls, Pulls::none());
+        let mut pulls = std::mem::replace(&mut self.pulls, Corrections::none());
         let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
         let this = &*self;
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
             if const { are_few::<T, Q, D>() } {
-                dispatch!(T, |k| this.pull_to_own_in::<_, Q, FEW_COMPONENTS>(
+                dispatch!(T, |k| this.correct_towards_own::<_, Q, FEW_COMPONENTS>(
                     k, cloud, weights, crossed, first, rows, taken
                 ));
             } else {
-                dispatch!(T, |k| this.pull_to_own_in::<_, Q, MOST_COMPONENTS>(
+                dispatch!(T, |k| this.correct_towards_own::<_, Q, MOST_COMPONENTS>(
                     k, cloud, weights, crossed, first, rows, taken
                 ));
             }
         });
         pulls.apply::<Q, D, NB>(cloud, values);
         for (place, cell) in self.cells.iter().enumerate() {
-            if cell.kind == Kind::Alone || pulls.is_left(place) {
+            if cell.kind == Kind::Fallback || pulls.is_left(place) {
                 self.relax_alone_towards_own(cloud, place, weights, crossed, values);
             }
         }
@@ -163,14 +163,14 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     }
 
     #[inline(always)]
-    fn pull_to_own_in<K: Packs<T>, Q: Field<T>, const C: usize>(
+    fn correct_towards_own<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
         k: K,
         cloud: &Cloud<'_, T, D>,
         weights: &[T],
-        crossed: &[Crossed<T>],
+        crossed: &[CourantNumbers<T>],
         first: usize,
-        rows: PullRows<'_, T>,
+        rows: CorrectionRows<'_, T>,
         values: &[Q],
     ) {
         // A copy: a compiler then knows that what is written leaves it alone.
@@ -183,7 +183,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             let fits = factorise::<T, K, D, NB>(k, &sums.gram, 0, &group.counts, self.tolerance);
             let mut shares = [T::zero(); LANES];
             for (l, place) in places.enumerate() {
-                if self.cells[place].kind == Kind::Four {
+                if self.cells[place].kind == Kind::Batch {
                     [shares[l], _] = self.relaxation.shares(crossed[place]);
                 }
             }
@@ -198,10 +198,10 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
             }
             for l in 0..LANES {
                 if fits.hard[l] && shares[l] > T::zero() {
-                    shares[l] = Pulls::left();
+                    shares[l] = Corrections::left();
                 }
             }
-            keep_pulls::<T, K, NB, C>(k, &pull, Q::COMPONENTS, shares, row);
+            keep_corrections::<T, K, NB, C>(k, &pull, Q::COMPONENTS, shares, row);
         }
     }
 
@@ -212,11 +212,11 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         cloud: &Cloud<'_, T, D>,
         place: usize,
         weights: &[T],
-        crossed: &[Crossed<T>],
+        crossed: &[CourantNumbers<T>],
         values: &mut [Q],
     ) {
         let cell = cloud.bins.occupied()[place] as usize;
-        let patch = if self.cells[place].kind == Kind::Alone {
+        let patch = if self.cells[place].kind == Kind::Fallback {
             self.patch(cloud, place)
         } else {
             Patch::whole(cloud.grid, cell)
@@ -233,8 +233,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     }
 }
 
-/// [`super::four::FourFits::turn_about_the_middle`] in one cell, `whole`, of which there is only `patch`.
-fn turn_about_the_middle<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
+/// [`super::four::FourFits::keep_means_of_cells`] in one cell, `whole`, of which there is only `patch`.
+fn keep_means_of_cells<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
     cloud: &Cloud<'_, T, D>,
     [whole, patch]: [&Patch<T, D>; 2],
     own_fit: &CellFit<T, NB>,

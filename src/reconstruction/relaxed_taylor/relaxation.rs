@@ -1,6 +1,6 @@
 //! How fast particles are moved towards the fits.
 
-use crate::reconstruction::Crossed;
+use crate::reconstruction::CourantNumbers;
 use crate::scalar::Scalar;
 
 /// Largest share towards the fit through neighbours. At a wall that fit extrapolates from one side: near the critical step,
@@ -66,7 +66,7 @@ impl<T: Scalar> Relaxation<T> {
 
     /// Shares of the difference to each fit that a step takes away.
     #[inline(always)]
-    pub(super) fn shares(&self, crossed: Crossed<T>) -> [T; 2] {
+    pub(super) fn shares(&self, crossed: CourantNumbers<T>) -> [T; 2] {
         let own = self.own * crossed.wave;
         let neighbours = self.neighbours * crossed.wave + self.motion * crossed.motion;
         let sum = T::one() + own + neighbours;

@@ -104,7 +104,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let mut coefficients = [[k.splat(T::zero()); MOST_COMPONENTS]; NB];
         let mut at_hand = None;
         for place in cells {
-            if self.cells[place].kind != Kind::Four {
+            if self.cells[place].kind != Kind::Batch {
                 self.integrate_apart(cloud, place, value, sink);
                 continue;
             }

@@ -9,8 +9,8 @@ use crate::grid::Grid;
 use crate::particles::{Bins, lattice};
 
 /// By a wave; the particles rest.
-fn crossed(wave: f64) -> Crossed<f64> {
-    Crossed { wave, motion: 0.0 }
+fn crossed(wave: f64) -> CourantNumbers<f64> {
+    CourantNumbers { wave, motion: 0.0 }
 }
 
 /// Momentum and kinetic energy of unequal masses before and after: the one is kept, the other never raised, and a
@@ -64,7 +64,7 @@ fn a_slope_from_the_neighbours_leaves_the_mean_of_a_cell_alone() {
             fit.prepare(&cloud);
             let pull = |fit: &mut RelaxedTaylor<f64, 1, 3>, stress: &[f64]| {
                 let mut sum = 0.0;
-                fit.take_in_field(&cloud, &Stored(stress));
+                fit.fit_field(&cloud, &Stored(stress));
                 fit.integrate_cells(&cloud, 2..3, |p| stress[p], |_, weighted| sum += weighted);
                 sum
             };
@@ -98,7 +98,7 @@ fn cells_alone_are_relaxed_as_four_at_once() {
             fit.relax(&cloud, None, &[crossed(0.3); 5], &mut values);
             values
         };
-        let (four, alone) = (relaxed(Kind::Four), relaxed(Kind::Alone));
+        let (four, alone) = (relaxed(Kind::Batch), relaxed(Kind::Fallback));
         // The body ends within the outer cells, which are of another size alone.
         for p in per_cell..4 * per_cell {
             assert_relative_eq!(four[p], alone[p], epsilon = 1e-11);
@@ -118,7 +118,7 @@ fn no_cell_of_a_full_box_counts_as_ended_within() {
         let mut fit = RelaxedTaylor::<f64, 2, 6>::for_degree(2);
         fit.prepare(&cloud);
         for place in 0..cells * cells {
-            assert_eq!(fit.filling(place), Filling::Full, "{cells}");
+            assert_eq!(fit.filling(place), Filling::Filled, "{cells}");
         }
     }
 }

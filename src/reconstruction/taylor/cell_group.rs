@@ -6,10 +6,10 @@ use super::runs::{Run, sums_of_runs};
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::reconstruction::values::lanes_of;
-use crate::reconstruction::{Cloud, Values, four_cells};
+use crate::reconstruction::{Cloud, Values, batch_of_cells};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each, in_lanes};
-use crate::taylor::{FourSums, taylor_lanes};
+use crate::taylor::{BatchSums, taylor_lanes};
 
 /// Up to four occupied cells with their particles; spare lanes repeat the last cell.
 pub(in super::super) struct CellGroup<const D: usize> {
@@ -20,7 +20,7 @@ pub(in super::super) struct CellGroup<const D: usize> {
 }
 
 /// What is summed over particles.
-pub(in super::super) trait Sought {
+pub(in super::super) trait WantedSums {
     /// Products of two functions.
     const PRODUCTS: bool = true;
     /// Functions times the components of a field.
@@ -34,19 +34,19 @@ pub(in super::super) trait Sought {
 /// Sums of a free fit.
 pub(in super::super) struct Free;
 
-impl Sought for Free {}
+impl WantedSums for Free {}
 
 /// Sums of a fit that keeps the integrals of densities, given the volumes.
 pub(in super::super) struct Conserved;
 
-impl Sought for Conserved {
+impl WantedSums for Conserved {
     const CONSERVED: bool = true;
 }
 
 /// What a field of densities adds to that, given the products.
 pub(in super::super) struct ConservedValues;
 
-impl Sought for ConservedValues {
+impl WantedSums for ConservedValues {
     const PRODUCTS: bool = false;
     const CONSERVED: bool = true;
 }
@@ -54,21 +54,21 @@ impl Sought for ConservedValues {
 /// Sums of a weighted fit.
 pub(in super::super) struct Weighted;
 
-impl Sought for Weighted {
+impl WantedSums for Weighted {
     const WEIGHTED: bool = true;
 }
 
 /// What a fit is made of before there is a field.
 pub(in super::super) struct Products;
 
-impl Sought for Products {
+impl WantedSums for Products {
     const VALUES: bool = false;
 }
 
 /// What a field adds to that.
 pub(in super::super) struct OfValues;
 
-impl Sought for OfValues {
+impl WantedSums for OfValues {
     const PRODUCTS: bool = false;
 }
 
@@ -76,7 +76,7 @@ impl<const D: usize> CellGroup<D> {
     #[inline(always)]
     pub(in super::super) fn new<T: Scalar>(cloud: &Cloud<'_, T, D>, places: Range<usize>) -> Self {
         let len = places.len();
-        let cells = four_cells(cloud, places);
+        let cells = batch_of_cells(cloud, places);
         Self {
             len,
             cells: cells.map(|(_, cell)| cell),
@@ -93,7 +93,7 @@ impl<const D: usize> CellGroup<D> {
     /// Sums over the particles of each cell, which are those at `places`.
     #[inline(always)]
     pub(in super::super) fn sums<
-        S: Sought,
+        S: WantedSums,
         T: Scalar,
         K: Packs<T>,
         Q: Field<T>,
@@ -106,7 +106,7 @@ impl<const D: usize> CellGroup<D> {
         places: Range<usize>,
         values: &impl Values<T, Q>,
         amounts: &[T],
-    ) -> FourSums<K::V, NB, C> {
+    ) -> BatchSums<K::V, NB, C> {
         if const { D > 1 } {
             return self.sums_one_by_one::<S, T, K, Q, NB, C>(k, cloud, values, amounts);
         }
@@ -118,13 +118,13 @@ impl<const D: usize> CellGroup<D> {
 
     /// [`CellGroup::sums_one_by_one`], out of the way of the code that usually runs.
     #[inline(never)]
-    fn sums_apart<S: Sought, T: Scalar, K: Packs<T>, Q: Field<T>, const NB: usize, const C: usize>(
+    fn sums_apart<S: WantedSums, T: Scalar, K: Packs<T>, Q: Field<T>, const NB: usize, const C: usize>(
         k: K,
         cloud: &Cloud<'_, T, D>,
         places: Range<usize>,
         values: &impl Values<T, Q>,
         amounts: &[T],
-    ) -> FourSums<K::V, NB, C> {
+    ) -> BatchSums<K::V, NB, C> {
         k.run(
             #[inline(always)]
             || Self::new(cloud, places).sums_one_by_one::<S, T, K, Q, NB, C>(k, cloud, values, amounts),
@@ -133,14 +133,21 @@ impl<const D: usize> CellGroup<D> {
 
     /// The same wherever the particles are, one of each cell at a time.
     #[inline(always)]
-    fn sums_one_by_one<S: Sought, T: Scalar, K: Packs<T>, Q: Field<T>, const NB: usize, const C: usize>(
+    fn sums_one_by_one<
+        S: WantedSums,
+        T: Scalar,
+        K: Packs<T>,
+        Q: Field<T>,
+        const NB: usize,
+        const C: usize,
+    >(
         &self,
         k: K,
         cloud: &Cloud<'_, T, D>,
         values: &impl Values<T, Q>,
         amounts: &[T],
-    ) -> FourSums<K::V, NB, C> {
-        let mut sums = FourSums::new(k);
+    ) -> BatchSums<K::V, NB, C> {
+        let mut sums = BatchSums::new(k);
         let particles: [&[u32]; LANES] = each(
             #[inline(always)]
             |l| cloud.bins.particles_in(self.numbers[l]),

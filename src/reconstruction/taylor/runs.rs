@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::cell_group::Sought;
+use super::cell_group::WantedSums;
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::particles::Bins;
@@ -13,7 +13,7 @@ use crate::reconstruction::values::{four_components, four_numbers};
 use crate::reconstruction::{Cloud, Values};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each, in_lanes};
-use crate::taylor::{FourSums, taylor_lanes};
+use crate::taylor::{BatchSums, taylor_lanes};
 
 /// Particles that follow each other.
 #[derive(Clone, Copy)]
@@ -43,7 +43,7 @@ impl Run {
     /// with them, a compiler would keep none of them in registers.
     #[inline(always)]
     fn sums<
-        S: Sought,
+        S: WantedSums,
         T: Scalar,
         K: Packs<T>,
         Q: Field<T>,
@@ -57,8 +57,8 @@ impl Run {
         cell: &Cell<D>,
         values: &impl Values<T, Q>,
         amounts: &[T],
-    ) -> FourSums<K::V, NB, C> {
-        let mut sums = FourSums::new(k);
+    ) -> BatchSums<K::V, NB, C> {
+        let mut sums = BatchSums::new(k);
         let mut first = self.first;
         // Full fours have a loop of their own, in which a compiler knows that the ones are ones.
         while first + LANES <= self.end {
@@ -77,7 +77,7 @@ impl Run {
 /// Adds four particles, the first of which has the number `first`; `ones` are zero for those that do not count.
 #[inline(always)]
 fn add_four<
-    S: Sought,
+    S: WantedSums,
     T: Scalar,
     K: Packs<T>,
     Q: Field<T>,
@@ -86,7 +86,7 @@ fn add_four<
     const C: usize,
 >(
     k: K,
-    sums: &mut FourSums<K::V, NB, C>,
+    sums: &mut BatchSums<K::V, NB, C>,
     cloud: &Cloud<'_, T, D>,
     cell: &Cell<D>,
     first: usize,
@@ -146,7 +146,7 @@ fn frame<T: Scalar, K: Packs<T>, const D: usize>(
 /// The sums of four cells, a cell in each lane.
 #[inline(always)]
 pub(super) fn sums_of_runs<
-    S: Sought,
+    S: WantedSums,
     T: Scalar,
     K: Packs<T>,
     Q: Field<T>,
@@ -160,13 +160,13 @@ pub(super) fn sums_of_runs<
     cells: &[Cell<D>; LANES],
     values: &impl Values<T, Q>,
     amounts: &[T],
-) -> FourSums<K::V, NB, C> {
-    let mut of_runs = [FourSums::new(k); LANES];
+) -> BatchSums<K::V, NB, C> {
+    let mut of_runs = [BatchSums::new(k); LANES];
     for l in 0..LANES {
         of_runs[l] = runs[l].sums::<S, T, K, Q, D, NB, C>(k, cloud, &cells[l], values, amounts);
     }
     let [a, b, c, d] = &of_runs;
-    let mut sums = FourSums::new(k);
+    let mut sums = BatchSums::new(k);
     for i in 0..NB {
         if S::PRODUCTS {
             for j in 0..i + 1 {

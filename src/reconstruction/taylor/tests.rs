@@ -32,7 +32,7 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
         mass: 2.0,
         momentum: vector![1.0, 0.0],
     };
-    let four = taylor.integrate_four::<Plain, MassMomentum<f64, 2>>(
+    let four = taylor.integrate_batch::<Plain, MassMomentum<f64, 2>>(
         Plain,
         &cloud,
         0..2,
@@ -43,7 +43,7 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
     );
     assert_eq!(four.hard, [false, true, false, false]);
     let momentum = |p: usize| density(p).momentum;
-    let any = taylor.integrate_four::<Plain, SVector<f64, 2>>(
+    let any = taylor.integrate_batch::<Plain, SVector<f64, 2>>(
         Plain,
         &cloud,
         0..2,
@@ -59,7 +59,7 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
         sum += weighted.mass;
     };
     // Particles at one end do not determine all functions.
-    assert!(!taylor.integrate_hard(&cloud, 1, true, &density, &mut add));
+    assert!(!taylor.integrate_single(&cloud, 1, true, &density, &mut add));
     // A hundredth of the mean at one of four points that weigh the same.
     assert!(
         (least - 0.6 / 400.0).abs() < 1e-15 && (sum - 0.6).abs() < 1e-15,
@@ -97,7 +97,7 @@ fn the_order_of_particles_does_not_matter() {
             let add = |_: usize, value: &[Four<f64>; MOST_COMPONENTS]| {
                 found.extend(value[..2].iter().flat_map(|q| q.0));
             };
-            let four = taylor.integrate_four::<Plain, _>(
+            let four = taylor.integrate_batch::<Plain, _>(
                 Plain,
                 &cloud,
                 cells,
@@ -132,7 +132,7 @@ fn a_field_of_many_components_is_streamed_along_one_axis_too() {
     let (mut single, mut all) = (Vec::new(), Vec::new());
     for c in 0..3 {
         let one = |p: usize| component(p, c);
-        taylor.integrate_four::<Plain, f64>(
+        taylor.integrate_batch::<Plain, f64>(
             Plain,
             &cloud,
             0..4,
@@ -145,7 +145,7 @@ fn a_field_of_many_components_is_streamed_along_one_axis_too() {
         );
     }
     let three = |p: usize| SVector::<f64, 3>::from_fn(|c, _| component(p, c));
-    taylor.integrate_four::<Plain, SVector<f64, 3>>(
+    taylor.integrate_batch::<Plain, SVector<f64, 3>>(
         Plain,
         &cloud,
         0..4,

@@ -81,7 +81,7 @@ impl Operator {
         for (index, element) in self.elements_of(displacement).enumerate() {
             let mut sound = true;
             for (stress, stretch) in stress.iter_mut().zip(self.stretches(element)) {
-                sound &= is_sound(stretch);
+                sound &= is_valid_volume(stretch);
                 *stress = law.stress(stretch);
             }
             if !sound {
@@ -110,11 +110,11 @@ impl Operator {
         let mut largest = 0.0_f64;
         for (index, element) in self.elements_of(displacement).enumerate() {
             for stretch in self.stretches(element) {
-                if !is_sound(stretch) {
+                if !is_valid_volume(stretch) {
                     return Err(self.invalid_stretch(index, element, time));
                 }
                 let stiffness = law.stiffness(stretch);
-                if !is_sound(stiffness) {
+                if !is_valid_volume(stiffness) {
                     return Err(ReferenceError::NotHyperbolic { stretch, stiffness });
                 }
                 largest = largest.max(stiffness);
@@ -191,7 +191,7 @@ impl Operator {
         let (local, stretch) = self
             .stretches(element)
             .enumerate()
-            .find(|(_, stretch)| !is_sound(*stretch))
+            .find(|(_, stretch)| !is_valid_volume(*stretch))
             .unwrap_or((0, f64::NAN));
         let position = self.coordinate(index * self.rule.degree() + local);
         ReferenceError::InvalidStretch {
@@ -203,7 +203,7 @@ impl Operator {
 }
 
 /// Whether a stretch or a stiffness is one that the equation can go on with.
-fn is_sound(value: f64) -> bool {
+fn is_valid_volume(value: f64) -> bool {
     value > 0.0 && value < f64::INFINITY
 }
 

@@ -195,16 +195,16 @@ where
     P: Phase<T, D>,
 {
     /// Lets the walls act on particles and DOFs, whose velocities are those that the step would have without them.
-    pub(super) fn meet_walls(&mut self, forcing: &Forcing<T, D>) {
+    pub(super) fn apply_wall_contact(&mut self, forcing: &Forcing<T, D>) {
         if Wall::all(forcing).next().is_none() {
             return;
         }
         let by_sums = const { R::AMOUNTS_AT_PARTICLES && !R::PARTICLE_MATRIX };
         if !self.contact.dofs.fit(forcing, self.dofs.mass.len()) {
-            self.lay_walls(forcing, by_sums);
+            self.allocate_wall_contact(forcing, by_sums);
         }
         self.contact.dofs.begin(forcing);
-        self.find_contacts(forcing);
+        self.detect_contacts(forcing);
         self.contact.read(&self.dofs.velocity);
         let scale = self.contact.scale();
         if scale <= T::zero() {
@@ -228,7 +228,7 @@ where
     /// Allocates what the walls that rub in this step need.
     #[cold]
     #[inline(never)]
-    fn lay_walls(&mut self, forcing: &Forcing<T, D>, by_sums: bool) {
+    fn allocate_wall_contact(&mut self, forcing: &Forcing<T, D>, by_sums: bool) {
         let reach = match by_sums {
             true => self.basis.reach(),
             false => mapping::reach::<D>(),
@@ -260,7 +260,7 @@ where
     }
 
     /// Finds the particles at the walls, sums their masses in pairs of DOFs, and sees which contacts are closed.
-    fn find_contacts(&mut self, forcing: &Forcing<T, D>) {
+    fn detect_contacts(&mut self, forcing: &Forcing<T, D>) {
         let WallContact {
             dofs,
             delassus,

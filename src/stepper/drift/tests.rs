@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::super::spans::{Fault, Flaw, Moved, Spans};
+use super::super::spans::{Fault, InvalidState, Moved, Spans};
 use super::{Matter, move_particles};
 use crate::basis::{BSpline, BasisFamily, Linear};
 use crate::grid::{Cell, Grid};
@@ -89,9 +89,9 @@ impl<const D: usize, S: Copy + Default + PartialEq + std::fmt::Debug> Body<D, S>
                 false => 1.0,
             };
             let flaw = match law.knows(&all.stress[p], &all.state[p]) {
-                false => Some(Flaw::Stress(all.stress[p][(0, 0)])),
+                false => Some(InvalidState::Stress(all.stress[p][(0, 0)])),
                 true if all.volume[p] > 0.0 => None,
-                true => Some(Flaw::Volume(all.volume[p])),
+                true => Some(InvalidState::Volume(all.volume[p])),
             };
             if let Some(flaw) = flaw {
                 moved.fault = Some(Fault::Material(p, flaw));
@@ -219,7 +219,7 @@ fn the_first_particle_at_fault_is_told() {
                     (Some(Fault::Left(a)), Some(Fault::Left(b))) => assert_eq!(a, b),
                     (Some(Fault::Material(a, found)), Some(Fault::Material(b, expected))) => {
                         assert_eq!(a, b);
-                        let stress = |flaw| matches!(flaw, Flaw::Stress(_));
+                        let stress = |flaw| matches!(flaw, InvalidState::Stress(_));
                         assert_eq!(stress(found), stress(expected));
                     }
                     _ => panic!("{places:?}: {found:?} in place of {expected:?}"),

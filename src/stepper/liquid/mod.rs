@@ -23,4 +23,4 @@ mod velocity;
 pub(super) use critical::Coupled;
 pub(super) use joint::Joint;
 pub(super) use seal::Seal;
-pub(super) use surface::EvenLoad;
+pub(super) use surface::UniformLoad;

@@ -15,14 +15,14 @@ use crate::scalar::Scalar;
 
 /// An even state that balances the load of a surface.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct EvenLoad<T> {
+pub(in super::super) struct UniformLoad<T> {
     /// Total stress (Pa).
     pub(in super::super) stress: T,
     /// Pressure of the liquid (Pa).
     pub(in super::super) pressure: T,
 }
 
-impl<T: Scalar> EvenLoad<T> {
+impl<T: Scalar> UniformLoad<T> {
     /// Of no load.
     pub(in super::super) fn none() -> Self {
         Self {
@@ -82,8 +82,8 @@ where
     /// even stress is taken from `sigma` and, times the normal, from the loads `t`. Taking the load of a surface itself leaves
     /// nothing to integrate where the body is in equilibrium with it, so that particles as quadrature points are exact there;
     /// a point load against their sum is not. Beyond one dimension no even state fits a load, and none is taken.
-    pub(in super::super) fn even_load(&self, forcing: &Forcing<T, D>) -> EvenLoad<T> {
-        let mut even = EvenLoad::none();
+    pub(in super::super) fn uniform_load(&self, forcing: &Forcing<T, D>) -> UniformLoad<T> {
+        let mut even = UniformLoad::none();
         if D > 1 || !P::FLOWS {
             return even;
         }
@@ -102,7 +102,7 @@ where
     }
 
     /// What loads the surfaces besides the even part: tractions on the whole, pressures on the liquid where it passes.
-    pub(in super::super) fn add_uneven_loads(&mut self, even: &EvenLoad<T>, forcing: &Forcing<T, D>) {
+    pub(in super::super) fn add_surface_loads(&mut self, even: &UniformLoad<T>, forcing: &Forcing<T, D>) {
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
             let (axis, area, outward) = (point.face.axis, point.area, point.outward());

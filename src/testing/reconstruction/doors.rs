@@ -13,7 +13,7 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     reconstruction: &mut R,
     cloud: &Cloud<'_, T, D>,
 ) -> Result<(), Failure> {
-    if !R::BY_CELLS {
+    if !R::CELLWISE {
         return Ok(());
     }
     let size = largest_response(reconstruction, cloud);
@@ -21,14 +21,14 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     let places = cloud.bins.occupied().len();
     let whole = collect(reconstruction, cloud, uneven);
     reconstruction.prepare(cloud);
-    reconstruction.take_in_field(cloud, &uneven::<T>);
+    reconstruction.fit_field(cloud, &uneven::<T>);
     let mut cells = Vec::new();
     // In two parts, the later one first, as threads may take them.
     for part in [places / 2..places, 0..places / 2] {
         reconstruction.integrate_cells(cloud, part, uneven, keep(&mut cells));
     }
     same(Property::CellsStreamTheSame, cloud, whole.clone(), cells, most)?;
-    if R::BY_FOUR {
+    if R::BATCHED {
         let four = by_four(reconstruction, cloud, false, &uneven);
         same(Property::FourStreamTheSame, cloud, whole, four, most)?;
     }
@@ -54,7 +54,7 @@ fn conserved<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     let largest = |most: T, point: &Streamed<T, D>| most.max(point.weighted.abs());
     let most = whole.iter().fold(T::zero(), largest) * T::lit(4.0);
     same(Property::CellsStreamTheSame, cloud, whole.clone(), cells, most)?;
-    if R::BY_FOUR {
+    if R::BATCHED {
         let four = by_four(reconstruction, cloud, true, &density);
         same(Property::FourStreamTheSame, cloud, whole, four, most)?;
     }
@@ -85,7 +85,7 @@ fn by_four<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     for first in (0..occupied.len()).step_by(LANES) {
         let places = first..occupied.len().min(first + LANES);
         let mut lanes_of_points: Vec<(usize, [T; LANES])> = Vec::new();
-        let outcome = reconstruction.integrate_four::<Plain, T>(
+        let outcome = reconstruction.integrate_batch::<Plain, T>(
             Plain,
             cloud,
             places.clone(),
@@ -97,7 +97,7 @@ fn by_four<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
         for (lane, place) in places.enumerate() {
             let number = occupied[place] as usize;
             if outcome.hard[lane] {
-                reconstruction.integrate_hard(cloud, number, conserve, value, &mut keep(&mut points));
+                reconstruction.integrate_single(cloud, number, conserve, value, &mut keep(&mut points));
                 continue;
             }
             let cell = cloud.grid.cell(number);

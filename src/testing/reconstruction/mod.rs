@@ -42,8 +42,8 @@ pub struct ReconstructionClaims {
 /// Checks `reconstruction` on the particles at `positions` with `volumes`, which should be well spread (a fit
 /// through almost coincident points loses digits that this check would count as errors): stream points lie in
 /// their cells and are the same for every field; the particles are streamed where the associated constants
-/// say so; streaming is linear; `prepare` forgets; cells streamed alone ([`Reconstruction::BY_CELLS`]) and
-/// four at a time ([`Reconstruction::BY_FOUR`]) stream the same; weights, conservation, reproduction and
+/// say so; streaming is linear; `prepare` forgets; cells streamed alone ([`Reconstruction::CELLWISE`]) and
+/// four at a time ([`Reconstruction::BATCHED`]) stream the same; weights, conservation, reproduction and
 /// integrals as claimed.
 ///
 /// The cost grows with the square of the number of particles.

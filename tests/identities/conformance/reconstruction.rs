@@ -353,8 +353,8 @@ struct Doors(Taylor<f64, 1, 3>, Door);
 impl Reconstruction<f64, 1> for Doors {
     const FIELDS_AT_PARTICLES: bool = false;
     const AMOUNTS_AT_PARTICLES: bool = false;
-    const BY_CELLS: bool = true;
-    const BY_FOUR: bool = true;
+    const CELLWISE: bool = true;
+    const BATCHED: bool = true;
 
     fn prepare(&mut self, cloud: &Cloud<'_, f64, 1>) {
         self.0.prepare(cloud);
@@ -405,7 +405,7 @@ impl Reconstruction<f64, 1> for Doors {
         self.0.line()
     }
 
-    fn integrate_four<K: Packs<f64>, Q: Field<f64>>(
+    fn integrate_batch<K: Packs<f64>, Q: Field<f64>>(
         &self,
         k: K,
         cloud: &Cloud<'_, f64, 1>,
@@ -417,7 +417,7 @@ impl Reconstruction<f64, 1> for Doors {
     ) -> Four {
         let mut four =
             self.0
-                .integrate_four::<K, Q>(k, cloud, cells, conserve, kept, value, |number, values| {
+                .integrate_batch::<K, Q>(k, cloud, cells, conserve, kept, value, |number, values| {
                     let mut values = *values;
                     let [a, b, c, d] = k.array(values[0]);
                     match self.1 {
@@ -433,7 +433,7 @@ impl Reconstruction<f64, 1> for Doors {
         four
     }
 
-    fn integrate_hard<Q: Field<f64>>(
+    fn integrate_single<Q: Field<f64>>(
         &self,
         cloud: &Cloud<'_, f64, 1>,
         cell: usize,
@@ -443,7 +443,7 @@ impl Reconstruction<f64, 1> for Doors {
     ) -> bool {
         let factor = if self.1 == Door::Hard { 1.0 + 1e-9 } else { 1.0 };
         self.0
-            .integrate_hard(cloud, cell, conserve, &|p| value(p).scaled(factor), sink)
+            .integrate_single(cloud, cell, conserve, &|p| value(p).scaled(factor), sink)
     }
 }
 

@@ -110,7 +110,7 @@ impl Operator {
                 strains.zip(inflows).zip(self.mesh.weights(index)).enumerate()
             {
                 let (stretch, point) = (1.0 + strain, points.start + q);
-                if !is_sound(stretch) {
+                if !is_valid_volume(stretch) {
                     return Err(self.invalid_stretch(point, stretch, loads.time));
                 }
                 let geometry = self.geometry(stretch);
@@ -167,11 +167,11 @@ impl Operator {
                 .derivatives(index, &displacement[first..first + self.mesh.width()]);
             for (q, strain) in strains.enumerate() {
                 let stretch = 1.0 + strain;
-                if !is_sound(stretch) {
+                if !is_valid_volume(stretch) {
                     return Err(self.invalid_stretch(index * self.mesh.width() + q, stretch, time));
                 }
                 let stiffness = law.stiffness(stretch);
-                if !is_sound(stiffness) {
+                if !is_valid_volume(stiffness) {
                     return Err(ReferenceError::NotHyperbolic { stretch, stiffness });
                 }
                 fastest = fastest.max(self.fast_speed_squared(stretch, stiffness));
@@ -299,6 +299,6 @@ impl Operator {
 }
 
 /// Whether a stretch or a stiffness is one that the equations can go on with.
-fn is_sound(value: f64) -> bool {
+fn is_valid_volume(value: f64) -> bool {
     value > 0.0 && value < f64::INFINITY
 }
