@@ -125,7 +125,7 @@ pub(crate) fn batch_of_cells<T: Scalar, const D: usize>(
 
 /// What became of four cells that were streamed at once.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Four {
+pub struct BatchStatus {
     /// Whether a cell could not be.
     pub hard: [bool; LANES],
     /// How many were fitted without the full set of functions.
@@ -318,9 +318,9 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         _kept: Kept<'_, T>,
         _value: &impl Values<T, Q>,
         _sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
-    ) -> Four {
+    ) -> BatchStatus {
         const { assert!(!Self::BATCHED, "BATCHED wants an own `integrate_batch`") };
-        Four::default()
+        BatchStatus::default()
     }
 
     /// The same in one cell that is given by its number, point by point; returns whether it was fitted with the full set of

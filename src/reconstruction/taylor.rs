@@ -15,7 +15,7 @@ use cell_group::{Conserved, ConservedValues, Free};
 use virtual_points::Lent;
 
 use super::gauss::GaussRule;
-use super::{Cloud, Four, Kept, Patch, Point, Reconstruction, Values};
+use super::{BatchStatus, Cloud, Kept, Patch, Point, Reconstruction, Values};
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::parallel::{self, each_span};
@@ -308,7 +308,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         kept: Kept<'_, T>,
         value: &impl Values<T, Q>,
         mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
-    ) -> Four {
+    ) -> BatchStatus {
         let mut coefficients = [[k.splat(T::zero()); C]; NB];
         let four = self.fit_four::<K, Q, C>(k, (cloud, cells), conserve, kept, value, &mut coefficients);
         let volume = cloud.grid.cell_volume();
@@ -327,7 +327,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         kept: Kept<'_, T>,
         value: &impl Values<T, Q>,
         coefficients: &mut Rights<K::V, NB, C>,
-    ) -> Four {
+    ) -> BatchStatus {
         k.run(
             #[inline(always)]
             move || self.fit_here::<K, Q, C>(k, place, conserve, kept, value, coefficients),
@@ -343,7 +343,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         kept: Kept<'_, T>,
         value: &impl Values<T, Q>,
         coefficients: &mut Rights<K::V, NB, C>,
-    ) -> Four {
+    ) -> BatchStatus {
         let cloud = &{ *cloud };
         let group = CellGroup::new(cloud, cells.clone());
         let mut fits = if conserve {
@@ -373,7 +373,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
                 coefficients[n][q] = fits.coefficients[n][q];
             }
         }
-        let mut four = Four::default();
+        let mut four = BatchStatus::default();
         // What usually is so, and sooner found out than whether each cell is hard.
         if fits.are_full && !negative && cloud.cuts.is_empty() {
             return four;
@@ -664,7 +664,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         kept: Kept<'_, T>,
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
-    ) -> Four {
+    ) -> BatchStatus {
         if const { are_few::<T, Q, D>() && Q::COMPONENTS == 1 } {
             self.integrate_few::<K, Q, 1>(k, (cloud, cells), conserve, kept, value, sink)
         } else if const { are_few::<T, Q, D>() } {

@@ -15,7 +15,9 @@ mod tests;
 use std::ops::Range;
 
 use super::gauss::GaussRule;
-use super::{Cloud, CourantNumbers, Filling, Four, Kept, Point, Reconstruction, Shepard, Stored, Values};
+use super::{
+    BatchStatus, Cloud, CourantNumbers, Filling, Kept, Point, Reconstruction, Shepard, Stored, Values,
+};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::parallel::CELLS;
@@ -232,7 +234,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         _kept: Kept<'_, T>,
         _value: &impl Values<T, Q>,
         mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
-    ) -> Four {
+    ) -> BatchStatus {
         let (group, volume) = (cells.start / LANES, cloud.grid.cell_volume());
         if const { are_few::<T, Q, D>() } {
             let coefficients = self.integrated::<K, Q, FEW_COMPONENTS>(k, group);
@@ -243,7 +245,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
             self.rule
                 .emit_lanes(k, volume, &coefficients, Q::COMPONENTS, &mut sink);
         }
-        let mut four = Four::default();
+        let mut four = BatchStatus::default();
         for (hard, cell) in four.hard.iter_mut().zip(&self.cells[cells]) {
             *hard = cell.kind != Kind::Batch;
         }

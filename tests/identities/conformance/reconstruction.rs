@@ -5,7 +5,8 @@ use std::ops::Range;
 use materialpoint::field::Field;
 use materialpoint::grid::Grid;
 use materialpoint::reconstruction::{
-    Cloud, CubicSpline, Four, Kept, Point, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor, Values,
+    BatchStatus, Cloud, CubicSpline, Kept, Point, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor,
+    Values,
 };
 use materialpoint::scalar::Scalar;
 use materialpoint::simd::Packs;
@@ -414,7 +415,7 @@ impl Reconstruction<f64, 1> for Doors {
         kept: Kept<'_, f64>,
         value: &impl Values<f64, Q>,
         mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
-    ) -> Four {
+    ) -> BatchStatus {
         let mut four =
             self.0
                 .integrate_batch::<K, Q>(k, cloud, cells, conserve, kept, value, |number, values| {
