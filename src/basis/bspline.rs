@@ -198,7 +198,7 @@ mod tests {
         let units = [0.0, 0.125, 0.5, 0.93];
         for cell in 0..cells {
             let at = AxisCell { cells, cell };
-            let four = BSpline::<P>.evaluate(Plain, at, Plain.new(units));
+            let four = BSpline::<P>.evaluate(Plain, at, Plain.pack(units));
             for l in 0..4 {
                 let one = BSpline::<P>.evaluate(One, at, units[l]);
                 for k in 0..W {

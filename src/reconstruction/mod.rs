@@ -312,8 +312,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     fn integrate_batch<K: Packs<T>, Q: Field<T>>(
         &self,
         _k: K,
-        _cloud: &Cloud<'_, T, D>,
-        _cells: Range<usize>,
+        _batch: (&Cloud<'_, T, D>, Range<usize>),
         _conserve: bool,
         _kept: Kept<'_, T>,
         _value: &impl Values<T, Q>,

@@ -658,8 +658,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
     fn integrate_batch<K: Packs<T>, Q: Field<T>>(
         &self,
         k: K,
-        cloud: &Cloud<'_, T, D>,
-        cells: Range<usize>,
+        (cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
         conserve: bool,
         kept: Kept<'_, T>,
         value: &impl Values<T, Q>,

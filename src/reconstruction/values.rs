@@ -49,7 +49,7 @@ impl<T: Scalar, Q: Field<T>> Values<T, Q> for Stored<'_, Q> {
                 components[q],
                 #[inline(always)]
                 |four| {
-                    k.new(in_lanes(
+                    k.pack(in_lanes(
                         #[inline(always)]
                         |l| four[l].component(q),
                     ))
@@ -80,7 +80,7 @@ impl<T: Scalar, const D: usize> Values<T, Symmetric<T, D>> for Stresses<'_, T, D
                 components[q],
                 #[inline(always)]
                 |four| {
-                    k.new(in_lanes(
+                    k.pack(in_lanes(
                         #[inline(always)]
                         |l| Symmetric(four[l]).component(q),
                     ))
@@ -143,7 +143,7 @@ pub(super) fn four_numbers<T: Scalar, K: Packs<T>>(k: K, values: &[T], first: us
         first,
         k.splat(T::zero()),
         #[inline(always)]
-        |&four| k.new(four),
+        |&four| k.pack(four),
     )
 }
 
@@ -161,7 +161,7 @@ pub(super) fn four_components<T: Scalar, K: Packs<T>, const D: usize>(
         k.splat(T::zero()),
         #[inline(always)]
         |four| {
-            k.new(in_lanes(
+            k.pack(in_lanes(
                 #[inline(always)]
                 |l| four[l][component],
             ))
@@ -178,7 +178,7 @@ pub(super) fn lanes_of<T: Scalar, K: Packs<T>, Q: Field<T>, const C: usize>(
     let values: [Q; LANES] = each(value);
     let mut components = [k.splat(T::zero()); C];
     for q in 0..Q::COMPONENTS {
-        components[q] = k.new(in_lanes(
+        components[q] = k.pack(in_lanes(
             #[inline(always)]
             |l| values[l].component(q),
         ));

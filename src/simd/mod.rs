@@ -67,7 +67,7 @@ pub trait Lanes<T>: Copy + Send + Sync + sealed::Sealed {
 /// What makes packs of `N` numbers.
 pub trait Packs<T, const N: usize = LANES>: Lanes<T> {
     /// The given numbers.
-    fn new(self, values: [T; N]) -> Self::V;
+    fn pack(self, values: [T; N]) -> Self::V;
 
     /// The numbers of a pack.
     fn array(self, pack: Self::V) -> [T; N];

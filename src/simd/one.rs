@@ -52,7 +52,7 @@ impl<T: Scalar> Lanes<T> for One {
 
 impl<T: Scalar> Packs<T, 1> for One {
     #[inline(always)]
-    fn new(self, [value]: [T; 1]) -> T {
+    fn pack(self, [value]: [T; 1]) -> T {
         value
     }
 

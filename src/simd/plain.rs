@@ -122,7 +122,7 @@ impl<T: Scalar> Lanes<T> for Plain {
 
 impl<T: Scalar> Packs<T> for Plain {
     #[inline(always)]
-    fn new(self, values: [T; LANES]) -> Four<T> {
+    fn pack(self, values: [T; LANES]) -> Four<T> {
         Four(values)
     }
 

@@ -4,11 +4,11 @@ use crate::scalar::Scalar;
 
 fn check<T: Scalar, K: Packs<T>>(k: K) {
     let numbers = [0.5, -2.0, 3.0, 4.0].map(T::lit);
-    let halves_and_doubles = k.one_by_one(k.new(numbers), |x| [[x / T::lit(2.0)], [x + x]]);
+    let halves_and_doubles = k.one_by_one(k.pack(numbers), |x| [[x / T::lit(2.0)], [x + x]]);
     let [[half], [double]] = halves_and_doubles;
     assert_eq!(k.array(half + half), numbers);
     assert_eq!(k.array(double)[3], T::lit(8.0));
-    let (a, two) = (k.new(numbers), k.splat(T::lit(2.0)));
+    let (a, two) = (k.pack(numbers), k.splat(T::lit(2.0)));
     assert_eq!(k.array(a), numbers);
     assert_eq!(
         k.array(a.mul_add(two, a - two)),
@@ -44,7 +44,7 @@ fn eight_lanes_do_what_four_do() {
     let Some(simd) = processor() else { return };
     let k = ManySingles(simd);
     let numbers = [0.5, -2.0, 3.0, 4.0, 5.0, -1.5, 0.25, 8.0_f32];
-    let a = Packs::<f32, 8>::new(k, numbers);
+    let a = Packs::<f32, 8>::pack(k, numbers);
     assert_eq!(Packs::<f32, 8>::array(k, a), numbers);
     let one = Lanes::<f32>::splat(k, 1.0);
     assert_eq!(
@@ -58,7 +58,7 @@ fn eight_lanes_do_what_four_do() {
 fn a_sweep_gets_the_packs_of_its_scalar() {
     fn sum<T: Scalar>(values: [T; 4]) -> T {
         dispatch!(T, |k| {
-            let pack = k.new(values);
+            let pack = k.pack(values);
             k.sums([pack, pack, pack, pack])[3]
         })
     }

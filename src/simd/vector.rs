@@ -131,7 +131,7 @@ macro_rules! vector {
                     Packs::<T, $lanes>::array(self, pack),
                     f,
                     #[inline(always)]
-                    |values| Packs::<T, $lanes>::new(self, values),
+                    |values| Packs::<T, $lanes>::pack(self, values),
                 )
             }
 
@@ -143,7 +143,7 @@ macro_rules! vector {
 
         impl<T: Scalar, S: Simd> Packs<T, $lanes> for $token<S> {
             #[inline(always)]
-            fn new(self, values: [T; $lanes]) -> $pack<S> {
+            fn pack(self, values: [T; $lanes]) -> $pack<S> {
                 match same::<_, [$scalar; $lanes]>(values) {
                     Some(values) => $pack($vector::load_array(self.0, values)),
                     None => not_its_lanes::<$pack<S>, T>(),

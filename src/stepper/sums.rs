@@ -175,7 +175,7 @@ pub(super) fn liquid_velocities<T: Scalar, const D: usize, P: Phase<T, D>, K: Pa
     each(
         #[inline(always)]
         |c| {
-            k.new(in_lanes(
+            k.pack(in_lanes(
                 #[inline(always)]
                 |l| velocities[l][c],
             ))

@@ -290,7 +290,7 @@ fn factorise_any<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
     let rounding = k.splat(T::lit(ROUNDING) * T::default_epsilon());
     let (total, numbers) = (
         gram[0][0],
-        k.new(in_lanes(
+        k.pack(in_lanes(
             #[inline(always)]
             |l| T::count(counts[l]),
         )),

@@ -110,10 +110,10 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
         let (mut lower, mut with_constant, mut n) = ([[zero; NB]; NB], [zero; NB], 0);
         for m in 0..NB {
             for j in 0..=m {
-                lower[m][j] = k.new(numbers[n]);
+                lower[m][j] = k.pack(numbers[n]);
                 n += 1;
             }
-            with_constant[m] = k.new(numbers[n]);
+            with_constant[m] = k.pack(numbers[n]);
             n += 1;
         }
         Some(Self { lower, with_constant })

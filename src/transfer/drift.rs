@@ -226,7 +226,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
             #[inline(always)]
             |a| k.splat(motion.dt * inverse[a]),
         );
-        let fields: [([K::V; D], [[K::V; D]; D]); C] = each(
+        let fields: [_; C] = each(
             #[inline(always)]
             |q| self.value_and_slopes(k, first, &factors, motion.velocities[q]),
         );

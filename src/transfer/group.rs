@@ -64,7 +64,7 @@ impl<const N: usize> Group<N> {
         self.with::<FULL, _, _>(
             values,
             #[inline(always)]
-            |lanes| k.new(lanes),
+            |lanes| k.pack(lanes),
         )
     }
 
@@ -84,7 +84,7 @@ impl<const N: usize> Group<N> {
     /// The same of what `amount` says of a particle.
     #[inline(always)]
     pub(crate) fn amounts_of<T: Scalar, K: Packs<T, N>>(self, k: K, amount: impl Fn(usize) -> T) -> K::V {
-        k.new(in_lanes(
+        k.pack(in_lanes(
             #[inline(always)]
             |l| {
                 if l < self.count {
@@ -122,7 +122,7 @@ impl<const N: usize> Group<N> {
                 each(
                     #[inline(always)]
                     |a| {
-                        k.new(in_lanes(
+                        k.pack(in_lanes(
                             #[inline(always)]
                             |l| lanes[l][(c, a)],
                         ))
@@ -179,7 +179,7 @@ pub(crate) fn components<T: Scalar, K: Packs<T, N>, const D: usize, const N: usi
     each(
         #[inline(always)]
         |a| {
-            k.new(in_lanes(
+            k.pack(in_lanes(
                 #[inline(always)]
                 |l| lanes[l][a],
             ))

@@ -140,8 +140,9 @@ macro_rules! at_fixed_points {
             let $fixed = &$crate::basis::Linear;
             $sweep
         } else {
-            let $fixed = $value;
-            $sweep
+            match $value {
+                $fixed => $sweep,
+            }
         }
     };
 }

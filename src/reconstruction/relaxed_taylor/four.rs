@@ -53,7 +53,7 @@ fn load<T: Scalar, K: Packs<T>, const NB: usize>(k: K, kept: &KeptProducts<T, NB
     let mut products = [[k.splat(T::zero()); NB]; NB];
     for i in 0..NB {
         for j in 0..=i {
-            products[i][j] = k.new(kept[i][j]);
+            products[i][j] = k.pack(kept[i][j]);
         }
     }
     products
@@ -72,7 +72,7 @@ fn counts<T: Scalar, K: Packs<T>>(k: K, sums: K::V) -> [usize; LANES] {
 /// One or zero.
 #[inline(always)]
 fn mask<T: Scalar, K: Packs<T>>(k: K, lanes: [bool; LANES]) -> K::V {
-    k.new(in_lanes(
+    k.pack(in_lanes(
         #[inline(always)]
         |l| if lanes[l] { T::one() } else { T::zero() },
     ))
@@ -215,7 +215,7 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
     ) {
         let rest = self.rest::<K, C>(k, group, gram, sums, wide);
         for n in 1..=D {
-            let middle = k.new(in_lanes(
+            let middle = k.pack(in_lanes(
                 #[inline(always)]
                 |l| middle(gram[n][0][l], gram[0][0][l]),
             ));
@@ -328,7 +328,7 @@ fn with_neighbours<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
             for i in 0..NB {
                 for j in 0..NB {
                     let (high, low) = (i.max(j), i.min(j));
-                    rows[i][j] = k.new([
+                    rows[i][j] = k.pack([
                         a.0[high][low][a.1],
                         b.0[high][low][b.1],
                         c.0[high][low][c.1],
@@ -376,7 +376,7 @@ impl<T: Scalar> KeptSums<'_, T> {
         let values = &self.values[first..first + NB * self.components];
         for n in 0..NB {
             for q in 0..self.components {
-                rights[n][q] = k.new(values[n * self.components + q]);
+                rights[n][q] = k.pack(values[n * self.components + q]);
             }
         }
         rights
@@ -404,7 +404,7 @@ impl<T: Scalar> KeptSums<'_, T> {
         );
         for n in 0..NB {
             for q in 0..self.components {
-                rights[n][q] = k.new(in_lanes(
+                rights[n][q] = k.pack(in_lanes(
                     #[inline(always)]
                     |l| of[l][n * self.components + q][at[l] % LANES],
                 ));

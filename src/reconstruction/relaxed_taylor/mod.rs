@@ -228,8 +228,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     fn integrate_batch<K: Packs<T>, Q: Field<T>>(
         &self,
         k: K,
-        cloud: &Cloud<'_, T, D>,
-        cells: Range<usize>,
+        (cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
         _conserve: bool,
         _kept: Kept<'_, T>,
         _value: &impl Values<T, Q>,

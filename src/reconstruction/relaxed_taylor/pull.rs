@@ -147,7 +147,7 @@ impl<T: Scalar> Corrections<T> {
         let coefficients = &self.coefficients[place * count..(place + 1) * count];
         let (zero, share) = (k.splat(T::zero()), k.splat(self.shares[place]));
         for q in 0..Q::COMPONENTS {
-            let old = k.new(in_lanes(
+            let old = k.pack(in_lanes(
                 #[inline(always)]
                 |l| values[l].component(q),
             ));
@@ -185,7 +185,7 @@ fn frame<T: Scalar, K: Packs<T>, const D: usize>(
     each(
         #[inline(always)]
         |a| {
-            let x = k.new(in_lanes(
+            let x = k.pack(in_lanes(
                 #[inline(always)]
                 |l| x[l][a],
             ));

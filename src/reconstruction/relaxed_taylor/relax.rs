@@ -72,7 +72,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                 fits.keep_means_of_cells::<K, C>(k, group, &self.grams[group], &sums, &mut wide);
             }
             let mut pull: Rights<K::V, NB, C> = [[zero; C]; NB];
-            let shares = [k.new(own), k.new(neighbours)];
+            let shares = [k.pack(own), k.pack(neighbours)];
             for n in 0..NB {
                 for q in 0..Q::COMPONENTS {
                     pull[n][q] = wide[n][q].mul_add(shares[1], seen[n][q] * shares[0]);
@@ -145,11 +145,21 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         each_span(self.share_groups(), GROUPS, rows, &|first, rows| {
             if const { are_few::<T, Q, D>() } {
                 dispatch!(T, |k| this.correct_towards_own::<_, Q, FEW_COMPONENTS>(
-                    k, cloud, weights, crossed, first, rows, taken
+                    k,
+                    cloud,
+                    weights,
+                    crossed,
+                    (first, rows),
+                    taken
                 ));
             } else {
                 dispatch!(T, |k| this.correct_towards_own::<_, Q, MOST_COMPONENTS>(
-                    k, cloud, weights, crossed, first, rows, taken
+                    k,
+                    cloud,
+                    weights,
+                    crossed,
+                    (first, rows),
+                    taken
                 ));
             }
         });
@@ -169,8 +179,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         cloud: &Cloud<'_, T, D>,
         weights: &[T],
         crossed: &[CourantNumbers<T>],
-        first: usize,
-        rows: CorrectionRows<'_, T>,
+        (first, rows): (usize, CorrectionRows<'_, T>),
         values: &[Q],
     ) {
         // A copy: a compiler then knows that what is written leaves it alone.
@@ -188,7 +197,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                 }
             }
             let mut pull: Rights<K::V, NB, C> = [[k.splat(T::zero()); C]; NB];
-            let share = k.new(shares);
+            let share = k.pack(shares);
             for q in 0..Q::COMPONENTS {
                 fits.factor
                     .solve::<T, C>(k.splat(T::zero()), 0, q, &sums.right, &mut pull);

@@ -157,7 +157,7 @@ impl<const D: usize> CellGroup<D> {
             let psi = taylor_lanes::<T, K, D, NB>(k, &self.local(k, cloud, &numbers));
             let mut first = weight;
             if S::WEIGHTED || S::CONSERVED {
-                first = k.new(in_lanes(
+                first = k.pack(in_lanes(
                     #[inline(always)]
                     |l| amounts[numbers[l]],
                 )) * weight;
@@ -196,7 +196,7 @@ impl<const D: usize> CellGroup<D> {
             #[inline(always)]
             |l| if n < self.counts[l] { T::one() } else { T::zero() },
         );
-        (numbers, k.new(weights))
+        (numbers, k.pack(weights))
     }
 
     /// Local coordinates of one particle of each cell.
@@ -215,11 +215,11 @@ impl<const D: usize> CellGroup<D> {
         each(
             #[inline(always)]
             |a| {
-                let x = k.new(in_lanes(
+                let x = k.pack(in_lanes(
                     #[inline(always)]
                     |l| x[l][a],
                 ));
-                let cell = k.new(in_lanes(
+                let cell = k.pack(in_lanes(
                     #[inline(always)]
                     |l| T::lit(f64::from(self.cells[l][a])),
                 ));

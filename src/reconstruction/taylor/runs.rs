@@ -63,12 +63,12 @@ impl Run {
         // Full fours have a loop of their own, in which a compiler knows that the ones are ones.
         while first + LANES <= self.end {
             let ones = k.splat(T::one());
-            add_four::<S, T, K, Q, D, NB, C>(k, &mut sums, cloud, cell, first, ones, values, amounts);
+            add_four::<S, T, K, Q, D, NB, C>(k, &mut sums, cloud, cell, (first, ones), values, amounts);
             first += LANES;
         }
         if first < self.end {
             let ones = first_ones(k, self.end - first);
-            add_four::<S, T, K, Q, D, NB, C>(k, &mut sums, cloud, cell, first, ones, values, amounts);
+            add_four::<S, T, K, Q, D, NB, C>(k, &mut sums, cloud, cell, (first, ones), values, amounts);
         }
         sums
     }
@@ -89,8 +89,7 @@ fn add_four<
     sums: &mut BatchSums<K::V, NB, C>,
     cloud: &Cloud<'_, T, D>,
     cell: &Cell<D>,
-    first: usize,
-    ones: K::V,
+    (first, ones): (usize, K::V),
     values: &impl Values<T, Q>,
     amounts: &[T],
 ) {
@@ -117,9 +116,9 @@ fn add_four<
 fn first_ones<T: Scalar, K: Packs<T>>(k: K, count: usize) -> K::V {
     let (zero, one) = (T::zero(), T::one());
     match count {
-        1 => k.new([one, zero, zero, zero]),
-        2 => k.new([one, one, zero, zero]),
-        3 => k.new([one, one, one, zero]),
+        1 => k.pack([one, zero, zero, zero]),
+        2 => k.pack([one, one, zero, zero]),
+        3 => k.pack([one, one, one, zero]),
         _ => k.splat(one),
     }
 }
@@ -174,19 +173,19 @@ pub(super) fn sums_of_runs<
                     continue;
                 }
                 let parts = [a.gram[i][j], b.gram[i][j], c.gram[i][j], d.gram[i][j]];
-                sums.gram[i][j] = k.new(k.sums(parts));
+                sums.gram[i][j] = k.pack(k.sums(parts));
             }
         }
         if S::VALUES {
             for q in 0..Q::COMPONENTS {
                 let parts = [a.right[i][q], b.right[i][q], c.right[i][q], d.right[i][q]];
-                sums.right[i][q] = k.new(k.sums(parts));
+                sums.right[i][q] = k.pack(k.sums(parts));
             }
         }
     }
     if !S::WEIGHTED {
         // A conversion from 64 bits takes five times as long.
-        sums.gram[0][0] = k.new(in_lanes(
+        sums.gram[0][0] = k.pack(in_lanes(
             #[inline(always)]
             |l| T::lit(f64::from((runs[l].end - runs[l].first) as u32)),
         ));

@@ -34,8 +34,7 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
     };
     let four = taylor.integrate_batch::<Plain, MassMomentum<f64, 2>>(
         Plain,
-        &cloud,
-        0..2,
+        (&cloud, 0..2),
         true,
         Kept::nothing(),
         &density,
@@ -45,8 +44,7 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
     let momentum = |p: usize| density(p).momentum;
     let any = taylor.integrate_batch::<Plain, SVector<f64, 2>>(
         Plain,
-        &cloud,
-        0..2,
+        (&cloud, 0..2),
         true,
         Kept::nothing(),
         &momentum,
@@ -99,8 +97,7 @@ fn the_order_of_particles_does_not_matter() {
             };
             let four = taylor.integrate_batch::<Plain, _>(
                 Plain,
-                &cloud,
-                cells,
+                (&cloud, cells),
                 conserve,
                 Kept::nothing(),
                 &density,
@@ -134,8 +131,7 @@ fn a_field_of_many_components_is_streamed_along_one_axis_too() {
         let one = |p: usize| component(p, c);
         taylor.integrate_batch::<Plain, f64>(
             Plain,
-            &cloud,
-            0..4,
+            (&cloud, 0..4),
             false,
             Kept::nothing(),
             &one,
@@ -147,8 +143,7 @@ fn a_field_of_many_components_is_streamed_along_one_axis_too() {
     let three = |p: usize| SVector::<f64, 3>::from_fn(|c, _| component(p, c));
     taylor.integrate_batch::<Plain, SVector<f64, 3>>(
         Plain,
-        &cloud,
-        0..4,
+        (&cloud, 0..4),
         false,
         Kept::nothing(),
         &three,

@@ -87,8 +87,7 @@ fn by_four<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
         let mut lanes_of_points: Vec<(usize, [T; LANES])> = Vec::new();
         let outcome = reconstruction.integrate_batch::<Plain, T>(
             Plain,
-            cloud,
-            places.clone(),
+            (cloud, places.clone()),
             conserve,
             Kept::nothing(),
             value,

@@ -409,8 +409,7 @@ impl Reconstruction<f64, 1> for Doors {
     fn integrate_batch<K: Packs<f64>, Q: Field<f64>>(
         &self,
         k: K,
-        cloud: &Cloud<'_, f64, 1>,
-        cells: Range<usize>,
+        (cloud, cells): (&Cloud<'_, f64, 1>, Range<usize>),
         conserve: bool,
         kept: Kept<'_, f64>,
         value: &impl Values<f64, Q>,
@@ -418,13 +417,13 @@ impl Reconstruction<f64, 1> for Doors {
     ) -> BatchStatus {
         let mut four =
             self.0
-                .integrate_batch::<K, Q>(k, cloud, cells, conserve, kept, value, |number, values| {
+                .integrate_batch::<K, Q>(k, (cloud, cells), conserve, kept, value, |number, values| {
                     let mut values = *values;
                     let [a, b, c, d] = k.array(values[0]);
                     match self.1 {
                         Door::Four => values[0] = k.splat(0.0) - values[0],
-                        Door::Lane => values[0] = k.new([b, b, c, d]),
-                        _ => values[0] = k.new([a, b, c, d]),
+                        Door::Lane => values[0] = k.pack([b, b, c, d]),
+                        _ => values[0] = k.pack([a, b, c, d]),
                     }
                     sink(number, &values);
                 });
