@@ -38,8 +38,9 @@ pub enum FixedPoints {
 
 /// A family of grid basis functions `phi_i` in `D` dimensions.
 ///
-/// The DOFs form a lattice, axis 0 fastest. Implementors promise a partition of unity, non-negative values,
-/// gradients that sum to zero and compact support; [`crate::testing::check_basis`] checks all of it.
+/// The DOFs form a lattice, axis 0 fastest. Implementors promise a partition of unity, non-negative values
+/// that are continuous from cell to cell, gradients that sum to zero and compact support;
+/// [`crate::testing::check_basis`] checks all of it.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no basis family for scalar `{T}` in `{D}` dimensions",
     note = "families: Linear, DualDomain, BSpline<1>, BSpline<2>, BSpline<3>, or your own `impl BasisFamily`"

@@ -21,6 +21,8 @@ use crate::scalar::Scalar;
 /// The hooks below [`Phase::validate`] are asked only of a phase that [`Phase::FLOWS`], which must write each
 /// of them: one that it forgets is an error at compile time, as soon as a stepper is made of it. Masses and
 /// forces of the liquid are those of [`mod@crate::stepper`]'s second balance of momentum.
+///
+/// [`crate::testing::check_phase`] checks that the parts agree with each other.
 pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
     /// Whether there is anything but the solid.
     const COUPLED: bool;

@@ -46,6 +46,10 @@ pub enum Property {
     HalfBand,
     /// Some point gives the DOF a value.
     EveryDofReached,
+    /// Two cells give a DOF the same value on the edge that they share.
+    Continuous,
+    /// `degree` is the degree that the values are claimed to reproduce.
+    DegreeAsSaid,
     /// A point that stands still sees the same values as a moving one.
     FixedPointValues,
     /// Gradients are the derivatives of the values.
@@ -76,6 +80,8 @@ pub enum Property {
     Unstressed,
     /// An increment of zero changes nothing.
     ZeroIncrement,
+    /// Stress is symmetric.
+    SymmetricStress,
     /// Stress increments are linear in small strain increments.
     LinearForSmallIncrements,
     /// `density * wave_speed^2` is the stiffness of uniaxial strain.
@@ -112,6 +118,34 @@ pub enum Property {
     CellsStreamTheSame,
     /// `integrate_batch` and `integrate_single` stream what one cell after another does.
     FourStreamTheSame,
+    /// `COUPLED = false` is said only where a phase does nothing.
+    CoupledAsSaid,
+    /// Without data of a phase the total stress is the effective one.
+    EffectiveStress,
+    /// The total stress is affine in the effective one.
+    AffineStress,
+    /// The porosity lies between 0 and 1.
+    Porosity,
+    /// A particle has the liquid that it was given.
+    LiquidRoundTrip,
+    /// `accelerate_liquid` adds to the velocity of the liquid, and changes nothing else.
+    AcceleratesLiquid,
+    /// Strain changes the pressure of the liquid, not its velocity.
+    StrainKeepsVelocity,
+    /// The mass of the liquid is not negative, and proportional to the volume.
+    LiquidMass,
+    /// The drag is not negative, and proportional to the volume if the mass is.
+    Drag,
+    /// Where the liquid moves with the solid, `update_with_flow` is `update`.
+    Undrained,
+    /// Solid and liquid change the pressure by their shares of the volume.
+    FlowShares,
+    /// Pressure over change of volume is `liquid_stiffness`.
+    LiquidStiffness,
+    /// The energy of the liquid is the work of its pressure.
+    LiquidEnergy,
+    /// What the liquid adds to the stress works as much as the energy of the liquid grows.
+    PoreStressIsWork,
 }
 
 impl fmt::Display for Property {
@@ -127,6 +161,8 @@ impl fmt::Display for Property {
             Self::FaceValues => "values on a face belong to the face's DOFs",
             Self::HalfBand => "DOFs that overlap are within the half band width",
             Self::EveryDofReached => "every DOF has a value somewhere",
+            Self::Continuous => "values are continuous from cell to cell",
+            Self::DegreeAsSaid => "`degree` is the degree that is reproduced",
             Self::FixedPointValues => "points that stand still see the same values",
             Self::GradientsAreDerivatives => "gradients are the derivatives of the values",
             Self::FixedPointGradients => "gradients at fixed points are the derivatives of the values",
@@ -147,6 +183,7 @@ impl fmt::Display for Property {
             }
             Self::Unstressed => "the undeformed state has neither stress nor energy",
             Self::ZeroIncrement => "an increment of zero changes nothing",
+            Self::SymmetricStress => "stress is symmetric",
             Self::LinearForSmallIncrements => "stress is linear in small increments",
             Self::WaveSpeed => "density * wave_speed^2 is the stiffness of uniaxial strain",
             Self::EnergyIsWork => "the change of energy is the work of the stress",
@@ -165,6 +202,20 @@ impl fmt::Display for Property {
             Self::ConstantGradient => "a gradient said to be constant in a cell is",
             Self::CellsStreamTheSame => "cells streamed alone stream what all together do",
             Self::FourStreamTheSame => "four cells at once stream what one after another does",
+            Self::CoupledAsSaid => "COUPLED says whether a phase does anything",
+            Self::EffectiveStress => "without data the total stress is the effective one",
+            Self::AffineStress => "the total stress is affine in the effective one",
+            Self::Porosity => "the porosity lies between 0 and 1",
+            Self::LiquidRoundTrip => "a particle has the liquid that it was given",
+            Self::AcceleratesLiquid => "`accelerate_liquid` adds to the velocity alone",
+            Self::StrainKeepsVelocity => "strain keeps the velocity of the liquid",
+            Self::LiquidMass => "the liquid's mass is proportional to the volume",
+            Self::Drag => "the drag is proportional to the volume",
+            Self::Undrained => "liquid that moves with the solid is undrained",
+            Self::FlowShares => "solid and liquid change the pressure by their shares of the volume",
+            Self::LiquidStiffness => "pressure over change of volume is `liquid_stiffness`",
+            Self::LiquidEnergy => "the liquid's energy is the work of its pressure",
+            Self::PoreStressIsWork => "what the liquid adds to the stress works as its energy grows",
         };
         f.write_str(words)
     }

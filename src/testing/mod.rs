@@ -26,10 +26,12 @@
 mod basis;
 mod failure;
 mod law;
+mod phase;
 mod reconstruction;
 mod worst;
 
 pub use basis::{BasisClaims, check_basis};
 pub use failure::{Expected, Failure, Place, Property};
 pub use law::{LawClaims, LawSample, check_law};
+pub use phase::{PhaseSample, check_phase};
 pub use reconstruction::{Measure, ReconstructionClaims, check_reconstruction};

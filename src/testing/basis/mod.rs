@@ -1,5 +1,6 @@
 //! Check of a basis family.
 
+mod continuity;
 mod derivative;
 mod doors;
 mod pointwise;
@@ -22,7 +23,8 @@ pub struct BasisClaims {
     pub fixed_point_gradients_are_derivatives: bool,
     /// Largest degree of which every polynomial of one coordinate is a sum of the values, with *some*
     /// coefficients. (For hats and dual domain the coefficients are the polynomial at the nodes, for B-splines
-    /// and a linear field the Greville abscissae.) One degree more must not be reproduced.
+    /// and a linear field the Greville abscissae.) One degree more must not be reproduced, and
+    /// [`BasisFamily::degree`] must say the same.
     pub reproduces: usize,
     /// With the coefficients of a linear field, the gradients of `for_each` sum to its gradient.
     pub gradient_reproduces_linear: bool,
@@ -44,7 +46,8 @@ impl BasisClaims {
 /// partition of unity, non-negative values, gradients that sum to zero, DOF numbers in range, overlap within
 /// the half band, values on faces, values at fixed points, and what the fast ways of a step see
 /// ([`BasisFamily::factors`], what [`BasisFamily::AT_FIXED_POINTS`] and [`BasisFamily::CONSTANT_GRADIENT`]
-/// say); and from points of its own the `claims` and that no DOF is out of reach.
+/// say); on the edges between cells the same values from both; and from points of its own the `claims`, the
+/// `degree`, and that no DOF is out of reach.
 ///
 /// Choose points on edges and faces too. The cost grows with the square of the number of DOFs: a few cells along
 /// each axis are enough, and different numbers of them find more.
@@ -59,6 +62,9 @@ pub fn check_basis<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
 ) -> Result<(), Failure> {
     for x in points {
         pointwise::check(basis, grid, x)?;
+    }
+    for x in points {
+        continuity::check(basis, grid, x)?;
     }
     derivative::check(basis, grid, points, claims)?;
     span::check(basis, grid, claims)

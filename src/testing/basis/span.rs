@@ -12,7 +12,7 @@ use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
-use crate::testing::failure::{Failure, Place, Property, at_least};
+use crate::testing::failure::{Failure, Place, Property, at_least, near};
 use crate::testing::worst::Worst;
 
 /// A function: values and gradients at the sample points.
@@ -85,7 +85,13 @@ pub(super) fn check<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
         }
         worst.judge(Property::Reproduces(degree), degree <= claims.reproduces)?;
     }
-    Ok(())
+    near(
+        Property::DegreeAsSaid,
+        || Place::Everywhere,
+        T::count(claims.reproduces),
+        T::count(basis.degree()),
+        T::zero(),
+    )
 }
 
 fn gradient_of_linear<T: Scalar, const D: usize>(

@@ -37,12 +37,12 @@ pub struct LawClaims {
 }
 
 /// Checks that the parts of `law` agree with each other: no stress and energy at rest, nothing from a zero
-/// increment, stress linear in small increments, wave speed, energy, rotation and stability as claimed; at
-/// small strain an energy that is the work in any case; elastic constants, if it has any, that are the
-/// stiffness at rest; the strain for a change of stress; a start that keeps its stress; that it knows the
-/// stresses that it gives. Over times from 1 us to 1000 s (`update_over`) material that is held gains no
-/// energy, no path gives back more than was put in, and `update` is the limit of slow strain (a viscosity) or
-/// of fast strain (a relaxation).
+/// increment, a symmetric stress, linear in small increments, wave speed, energy, rotation and stability as
+/// claimed; at small strain an energy that is the work in any case; elastic constants, if it has any, that
+/// are the stiffness at rest; the strain for a change of stress; a start that keeps its stress; that it
+/// knows the stresses that it gives. Over times from 1 us to 1000 s (`update_over`) material that is held
+/// gains no energy, no path gives back more than was put in, and `update` is the limit of slow strain (a
+/// viscosity) or of fast strain (a relaxation).
 ///
 /// Derivatives are differences from states of their own, paths are cut into many equal increments, and what
 /// these allow is of their order: nothing in the law's units needs to be given.
@@ -56,6 +56,7 @@ pub fn check_law<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
 ) -> Result<(), Failure> {
     stiffness::at_rest(law, sample)?;
     stiffness::zero_increment(law, sample)?;
+    stiffness::symmetry(law, sample)?;
     stiffness::small_increments(law, sample)?;
     stiffness::wave_speed(law, sample, claims.wave_speed_is_sharp)?;
     energy::is_work(law, sample, claims.energy_is_work)?;

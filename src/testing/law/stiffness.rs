@@ -57,6 +57,20 @@ pub(super) fn zero_increment<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>
     Ok(())
 }
 
+/// At the end of straight paths, spin included, over ten increments.
+pub(super) fn symmetry<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
+    law: &L,
+    sample: &LawSample<T>,
+) -> Result<(), Failure> {
+    let allowed = modulus::<T, D, L>(law, sample) * round_off();
+    directions::<T, D>().into_iter().try_for_each(|direction| {
+        let mut material = Material::<T, D, L, _>::new(law);
+        material.follow(&(direction * sample.strain), 10);
+        let stress = &material.stress;
+        same_stress(Property::SymmetricStress, &stress.transpose(), stress, allowed)
+    })
+}
+
 pub(super) fn same_stress<T: Scalar, const D: usize>(
     property: Property,
     expected: &SMatrix<T, D, D>,

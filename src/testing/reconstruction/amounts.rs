@@ -1,5 +1,6 @@
 //! Whether amounts are kept.
 
+use crate::particles::Bins;
 use crate::reconstruction::{Cloud, Reconstruction};
 use crate::scalar::Scalar;
 use crate::testing::failure::{Failure, Place, Property};
@@ -27,6 +28,40 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
         are_particles(cloud, &stream, amount)?;
     }
     cells(cloud, &stream, amount).judge(Property::ConservesAmounts, claimed)
+}
+
+/// The same where every other occupied cell has lost all but its first particle, which determines no fit but
+/// has an amount all the same.
+pub(super) fn thinned<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
+    reconstruction: &mut R,
+    cloud: &Cloud<'_, T, D>,
+    claimed: bool,
+) -> Result<(), Failure> {
+    if !claimed {
+        return Ok(());
+    }
+    let mut kept = vec![true; cloud.positions.len()];
+    for &number in cloud.bins.occupied().iter().step_by(2) {
+        for &p in cloud.bins.particles_in(number as usize).iter().skip(1) {
+            kept[p as usize] = false;
+        }
+    }
+    let left = || (0..kept.len()).filter(|&p| kept[p]);
+    let positions: Vec<_> = left().map(|p| cloud.positions[p]).collect();
+    let volumes: Vec<_> = left().map(|p| cloud.volumes[p]).collect();
+    let Ok(bins) = Bins::new(cloud.grid, &positions) else {
+        return Ok(());
+    };
+    let thin = Cloud {
+        bins: &bins,
+        positions: &positions,
+        volumes: &volumes,
+        ..*cloud
+    };
+    reconstruction.prepare(&thin);
+    let found = check(reconstruction, &thin, true);
+    reconstruction.prepare(cloud);
+    found
 }
 
 /// Deviation of each cell's sum. What is streamed may be larger than the amounts and cancel, so its size

@@ -27,7 +27,8 @@ pub enum Measure {
 /// What a reconstruction claims *on the particles given to the check*.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReconstructionClaims {
-    /// `integrate_conserved` keeps the amounts, cell by cell.
+    /// `integrate_conserved` keeps the amounts, cell by cell; if so, also where the check leaves a cell one
+    /// of the particles alone.
     pub conserves_amounts: bool,
     /// What the weights sum to.
     pub measure: Measure,
@@ -78,5 +79,6 @@ pub fn check_reconstruction<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     amounts::check(reconstruction, &cloud, claims.conserves_amounts)?;
     doors::check(reconstruction, &cloud)?;
     fields::check(reconstruction, &cloud, claims)?;
-    stream::forgets(reconstruction, &cloud)
+    stream::forgets(reconstruction, &cloud)?;
+    amounts::thinned(reconstruction, &cloud, claims.conserves_amounts)
 }

@@ -11,6 +11,8 @@ use materialpoint::simd::{Lanes, One};
 use materialpoint::testing::{BasisClaims, Expected, Failure, Property, check_basis};
 use nalgebra::{SVector, vector};
 
+use super::{Planted, planted};
+
 /// Places within a cell: edges, middle, and some others.
 const UNITS: [f64; 6] = [0.0, 0.125, 0.4, 0.5, 0.93, 1.0];
 
@@ -249,23 +251,31 @@ impl BasisFamily<f64, 1> for Faulty {
     }
 }
 
-#[test]
-fn mistakes_are_found_and_named() {
-    let found = |mistake| verdict(&Faulty(mistake), &dual_domain(5));
-    assert_eq!(
-        found(Mistake::CentralAtEnds),
-        Some(Property::GradientOfLinearField)
-    );
-    assert_eq!(found(Mistake::OneSidedSum), Some(Property::GradientSum));
-    assert_eq!(found(Mistake::NoUnity), Some(Property::PartitionOfUnity));
-    assert_eq!(found(Mistake::Negative), Some(Property::NonNegative));
-    assert_eq!(found(Mistake::Range), Some(Property::DofInRange));
-    assert_eq!(found(Mistake::Unreached), Some(Property::EveryDofReached));
-    assert_eq!(found(Mistake::Band), Some(Property::HalfBand));
-    assert_eq!(found(Mistake::Face), Some(Property::FaceValues));
-    assert_eq!(found(Mistake::FixedValues), Some(Property::FixedPointValues));
-    assert_eq!(found(Mistake::Order), Some(Property::SameDofsInCell));
-    assert_eq!(found(Mistake::Window), Some(Property::DofWindow));
+const MISTAKES: [(Mistake, Property); 11] = [
+    (Mistake::CentralAtEnds, Property::GradientOfLinearField),
+    (Mistake::OneSidedSum, Property::GradientSum),
+    (Mistake::NoUnity, Property::PartitionOfUnity),
+    (Mistake::Negative, Property::NonNegative),
+    (Mistake::Range, Property::DofInRange),
+    (Mistake::Unreached, Property::EveryDofReached),
+    (Mistake::Band, Property::HalfBand),
+    (Mistake::Face, Property::FaceValues),
+    (Mistake::FixedValues, Property::FixedPointValues),
+    (Mistake::Order, Property::SameDofsInCell),
+    (Mistake::Window, Property::DofWindow),
+];
+
+/// All mistakes of this file.
+pub(super) fn mistakes() -> Vec<Planted> {
+    let line = |mistake| verdict(&Faulty(mistake), &dual_domain(5));
+    let lanes = |lanes| verdict(&Fast(lanes), &BasisClaims::of_degree(1));
+    let fixed = |fixed| verdict(&Silent(DualDomain::new(), fixed), &dual_domain(5));
+    let mut all = planted("family", MISTAKES, line);
+    all.extend(planted("lanes", LANES, lanes));
+    all.extend(planted("fixed points", FIXED, fixed));
+    all.extend(planted("axis", SLIPS, slip));
+    all.extend(planted("plane", IN_PLANE, in_plane));
+    all
 }
 
 /// The mistake at the ends is one of a claim: with the claim withdrawn, the family passes.
@@ -337,58 +347,226 @@ impl<T: Scalar> AxisBasis<T, 2> for Fast {
 
 materialpoint::tensor_product_family!(Fast, width = 2, degree = 1);
 
+const LANES: [(Mistaken, Property); 3] = [
+    (Mistaken::Slope, Property::Factors),
+    (Mistaken::Value, Property::Factors),
+    (Mistaken::Neighbour, Property::Factors),
+];
+
 #[test]
-fn lanes_that_say_something_else_than_rows_are_found() {
-    for (lanes, expected) in [
-        (Mistaken::Right, None),
-        (Mistaken::Slope, Some(Property::Factors)),
-        (Mistaken::Value, Some(Property::Factors)),
-        (Mistaken::Neighbour, Some(Property::Factors)),
-    ] {
+fn lanes_that_say_something_else_than_rows_are_found_in_the_plane_too() {
+    let wrong = LANES.map(|(lanes, property)| (lanes, Some(property)));
+    for (lanes, expected) in [(Mistaken::Right, None)].into_iter().chain(wrong) {
         let claims = BasisClaims::of_degree(1);
-        assert_eq!(verdict(&Fast(lanes), &claims), expected, "{lanes:?}");
         let plane = grid::<f64, 2>(3);
         let found = check_basis(&Fast(lanes), &plane, &points(&plane), &claims);
         assert_eq!(found.err().map(|failure| failure.property), expected, "{lanes:?}");
     }
+    assert_eq!(verdict(&Fast(Mistaken::Right), &BasisClaims::of_degree(1)), None);
 }
 
-/// Dual domain that says nothing of points that stand still, so that four cells at once would see those that
-/// move.
-#[test]
-fn other_functions_at_fixed_points_must_be_announced() {
-    #[derive(Clone, Debug)]
-    struct Silent(DualDomain);
+/// What a family says of points that stand still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Said {
+    /// Nothing, so that four cells at once would see the functions of points that move.
+    Nothing,
+}
 
-    impl BasisFamily<f64, 1> for Silent {
-        fn degree(&self) -> usize {
-            1
-        }
+const FIXED: [(Said, Property); 1] = [(Said::Nothing, Property::FixedPointsAsSaid)];
 
-        fn dofs(&self, grid: &Grid<f64, 1>) -> [usize; 1] {
-            self.0.dofs(grid)
-        }
+/// Dual domain with other functions at points that stand still.
+#[derive(Clone, Debug)]
+struct Silent(DualDomain, Said);
 
-        fn for_each(
-            &self,
-            grid: &Grid<f64, 1>,
-            cell: &Cell<1>,
-            x: &SVector<f64, 1>,
-            f: impl FnMut(usize, f64, SVector<f64, 1>),
-        ) {
-            self.0.for_each(grid, cell, x, f);
-        }
+impl BasisFamily<f64, 1> for Silent {
+    fn degree(&self) -> usize {
+        1
+    }
 
-        fn for_each_at_fixed_point(
-            &self,
-            grid: &Grid<f64, 1>,
-            cell: &Cell<1>,
-            x: &SVector<f64, 1>,
-            f: impl FnMut(usize, f64, SVector<f64, 1>),
-        ) {
-            Linear.for_each(grid, cell, x, f);
+    fn dofs(&self, grid: &Grid<f64, 1>) -> [usize; 1] {
+        self.0.dofs(grid)
+    }
+
+    fn for_each(
+        &self,
+        grid: &Grid<f64, 1>,
+        cell: &Cell<1>,
+        x: &SVector<f64, 1>,
+        f: impl FnMut(usize, f64, SVector<f64, 1>),
+    ) {
+        self.0.for_each(grid, cell, x, f);
+    }
+
+    fn for_each_at_fixed_point(
+        &self,
+        grid: &Grid<f64, 1>,
+        cell: &Cell<1>,
+        x: &SVector<f64, 1>,
+        f: impl FnMut(usize, f64, SVector<f64, 1>),
+    ) {
+        match self.1 {
+            Said::Nothing => Linear.for_each(grid, cell, x, f),
         }
     }
-    let found = verdict(&Silent(DualDomain::new()), &dual_domain(5));
-    assert_eq!(found, Some(Property::FixedPointsAsSaid));
+}
+
+/// Slips in a family of one axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Slip {
+    Right,
+    /// Slopes by a coordinate that runs from -1 to 1.
+    HalfSlope,
+    /// Slopes with the sign of the other end.
+    SlopeSign,
+    /// The last cell begins at the DOF before its own.
+    FirstDofAtEnd,
+    /// An inner cell does.
+    FirstDofInside,
+    /// Every cell has DOFs of its own.
+    OwnDofs,
+    /// The coordinate runs the other way.
+    Mirrored,
+    /// Values weighed by the square of the distance, which sum to one no more.
+    Squares,
+}
+
+const SLIPS: [(Slip, Property); 7] = [
+    (Slip::HalfSlope, Property::GradientsAreDerivatives),
+    (Slip::SlopeSign, Property::GradientsAreDerivatives),
+    (Slip::FirstDofAtEnd, Property::Continuous),
+    (Slip::FirstDofInside, Property::Continuous),
+    (Slip::OwnDofs, Property::Continuous),
+    (Slip::Mirrored, Property::Continuous),
+    (Slip::Squares, Property::PartitionOfUnity),
+];
+
+/// Hats with a slip, alike for single points and for several.
+#[derive(Clone, Copy, Debug)]
+struct Hats(Slip);
+
+impl<T: Scalar> AxisBasis<T, 2> for Hats {
+    fn dofs_on_axis(&self, cells: usize) -> usize {
+        if self.0 == Slip::OwnDofs {
+            2 * cells
+        } else {
+            cells + 1
+        }
+    }
+
+    fn first_dof(&self, at: AxisCell) -> usize {
+        match self.0 {
+            Slip::FirstDofAtEnd if at.cell + 1 == at.cells => at.cell - 1,
+            Slip::FirstDofInside if at.cell == 2 => 1,
+            Slip::OwnDofs => 2 * at.cell,
+            _ => at.cell,
+        }
+    }
+
+    fn evaluate<K: Lanes<T>>(&self, k: K, _at: AxisCell, unit: K::V) -> Functions<K::V, 2> {
+        let (zero, one) = (k.splat(T::zero()), k.splat(T::one()));
+        let half = k.splat(T::lit(0.5));
+        let (value, slope) = ([one - unit, unit], [zero - one, one]);
+        let (value, slope) = match self.0 {
+            Slip::HalfSlope => (value, [zero - half, half]),
+            Slip::SlopeSign => (value, [one, zero - one]),
+            Slip::Mirrored => ([unit, one - unit], [one, zero - one]),
+            Slip::Squares => (value.map(|v| v * v), [zero - one, one]),
+            _ => (value, slope),
+        };
+        Functions { value, slope }
+    }
+}
+
+materialpoint::tensor_product_family!(Hats, width = 2, degree = 1);
+
+fn slip(slip: Slip) -> Option<Property> {
+    verdict(&Hats(slip), &BasisClaims::of_degree(1))
+}
+
+/// Slips in a family of the plane that is written out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum InPlane {
+    Right,
+    /// Gradients by the coordinate in cells.
+    NotDivided,
+    /// One cell size for both axes.
+    OtherCellSize,
+    /// The gradient along an axis without the values along the other.
+    NoProduct,
+    /// Axis 1 is numbered first.
+    OtherAxisFirst,
+    /// The degree of the products, not of the values along an axis.
+    Degree,
+}
+
+const IN_PLANE: [(InPlane, Property); 5] = [
+    (InPlane::NotDivided, Property::GradientsAreDerivatives),
+    (InPlane::OtherCellSize, Property::GradientsAreDerivatives),
+    (InPlane::NoProduct, Property::GradientsAreDerivatives),
+    (InPlane::OtherAxisFirst, Property::FaceValues),
+    (InPlane::Degree, Property::DegreeAsSaid),
+];
+
+/// Bilinear functions with a slip.
+#[derive(Clone, Copy, Debug)]
+struct Bilinear(InPlane);
+
+impl BasisFamily<f64, 2> for Bilinear {
+    fn degree(&self) -> usize {
+        if self.0 == InPlane::Degree { 2 } else { 1 }
+    }
+
+    fn dofs(&self, grid: &Grid<f64, 2>) -> [usize; 2] {
+        grid.cells().map(|cells| cells + 1)
+    }
+
+    fn for_each(
+        &self,
+        grid: &Grid<f64, 2>,
+        cell: &Cell<2>,
+        x: &SVector<f64, 2>,
+        mut f: impl FnMut(usize, f64, SVector<f64, 2>),
+    ) {
+        let unit: [f64; 2] = std::array::from_fn(|a| grid.unit_coordinate(a, cell[a], x[a]));
+        let value = unit.map(|u| [1.0 - u, u]);
+        let (slope, shape) = ([-1.0, 1.0], self.dofs(grid));
+        for corner in 0..4 {
+            let (i, j) = (corner % 2, corner / 2);
+            let (along, up) = (cell[0] as usize + i, cell[1] as usize + j);
+            let dof = match self.0 {
+                InPlane::OtherAxisFirst => along * shape[1] + up,
+                _ => up * shape[0] + along,
+            };
+            let mut gradient = vector![slope[i] * value[1][j], value[0][i] * slope[j]];
+            if self.0 == InPlane::NoProduct {
+                gradient = vector![slope[i], slope[j]] / 2.0;
+            }
+            for a in 0..2 {
+                gradient[a] *= match self.0 {
+                    InPlane::NotDivided => 1.0,
+                    InPlane::OtherCellSize => grid.inverse_cell_size()[0],
+                    _ => grid.inverse_cell_size()[a],
+                };
+            }
+            f(dof, value[0][i] * value[1][j], gradient);
+        }
+    }
+}
+
+fn in_plane(mistake: InPlane) -> Option<Property> {
+    let grid = grid::<f64, 2>(3);
+    check_basis(
+        &Bilinear(mistake),
+        &grid,
+        &points(&grid),
+        &BasisClaims::of_degree(1),
+    )
+    .err()
+    .map(|failure| failure.property)
+}
+
+#[test]
+fn families_without_their_slips_pass() {
+    assert_eq!(slip(Slip::Right), None);
+    assert_eq!(in_plane(InPlane::Right), None);
 }

@@ -5,6 +5,8 @@ use materialpoint::scalar::Scalar;
 use materialpoint::testing::{Failure, LawClaims, LawSample, Property, check_law};
 use nalgebra::SMatrix;
 
+use super::{Planted, planted};
+
 fn moduli<T: Scalar>() -> Moduli<T> {
     Moduli::from_young(T::lit(4e4), T::lit(0.3)).unwrap()
 }
@@ -85,6 +87,18 @@ enum Mistake {
     Jump,
     /// The increment is not made symmetric.
     SpinIsStrain,
+    /// One of the two shears of the increment is taken for both.
+    UpperShear,
+    /// The shear of engineers, twice that of the tensor, is taken for it.
+    EngineeringShear,
+    /// Shear stress leads the other way.
+    ShearSign,
+    /// The energy counts one of the two shear stresses.
+    OneShearInEnergy,
+    /// Waves at the speed of plane stress, with `1 - nu^2`.
+    PlaneStressWave,
+    /// Poisson's ratio enters the wave's speed with the wrong sign.
+    PoissonSign,
 }
 
 /// Linear elasticity with one mistake.
@@ -106,6 +120,17 @@ impl<const D: usize> ConstitutiveLaw<f64, D> for Faulty {
             Mistake::Leaks => *stress *= 1.0 - 1e-9,
             Mistake::Jump if increment.norm() > 0.0 => stress[(0, 0)] += 1e-3,
             Mistake::SpinIsStrain => *stress += (increment - increment.transpose()) * 1e4,
+            Mistake::UpperShear => {
+                let wrong = moduli::<f64>().mu * (increment[(0, 1)] - increment[(1, 0)]);
+                stress[(0, 1)] += wrong;
+                stress[(1, 0)] += wrong;
+            }
+            Mistake::EngineeringShear | Mistake::ShearSign => {
+                let right = moduli::<f64>().mu * (increment[(0, 1)] + increment[(1, 0)]);
+                let more = if self.0 == Mistake::ShearSign { -2.0 } else { 1.0 };
+                stress[(0, 1)] += more * right;
+                stress[(1, 0)] += more * right;
+            }
             _ => {}
         }
     }
@@ -114,40 +139,64 @@ impl<const D: usize> ConstitutiveLaw<f64, D> for Faulty {
         match self.0 {
             Mistake::Slow => (4e4 / density).sqrt(),
             Mistake::Fast => 2.0 * (moduli::<f64>().p_wave() / density).sqrt(),
+            Mistake::PlaneStressWave => (4e4 / (1.0 - 0.3 * 0.3) / density).sqrt(),
+            Mistake::PoissonSign => (4e4 * 1.3 / (0.7 * 1.6) / density).sqrt(),
             _ => (moduli::<f64>().p_wave() / density).sqrt(),
         }
     }
 
     fn energy_density(&self, stress: &SMatrix<f64, D, D>, _state: &()) -> f64 {
         let elastic = LinearElastic { moduli: moduli() };
-        let factor = if self.0 == Mistake::Energy { 2.0 } else { 1.0 };
-        factor * elastic.energy_density(stress, &())
+        let energy = elastic.energy_density(stress, &());
+        match self.0 {
+            Mistake::Energy => 2.0 * energy,
+            Mistake::OneShearInEnergy => energy - stress[(0, 1)].powi(2) / (4.0 * moduli::<f64>().mu),
+            _ => energy,
+        }
     }
 }
 
 fn verdict(mistake: Mistake) -> Option<Property> {
     // A shear is half a rotation: the energy's claim must be withdrawn for the rotation alone to show.
     let claims = LawClaims {
-        energy_is_work: mistake != Mistake::SpinIsStrain,
+        energy_is_work: mistake != Mistake::UpperShear,
         ..SMALL_STRAIN
     };
     let outcome = check_law::<f64, 2, _>(&Faulty(mistake), &sample(), &claims);
     outcome.err().map(|failure| failure.property)
 }
 
+const MISTAKES: [(Mistake, Property); 13] = [
+    (Mistake::Slow, Property::WaveSpeed),
+    (Mistake::Fast, Property::WaveSpeed),
+    (Mistake::Energy, Property::EnergyIsWork),
+    (Mistake::Prestressed, Property::Unstressed),
+    (Mistake::Leaks, Property::ZeroIncrement),
+    (Mistake::Jump, Property::LinearForSmallIncrements),
+    (Mistake::SpinIsStrain, Property::SymmetricStress),
+    (Mistake::UpperShear, Property::RotationKeepsEnergy),
+    (Mistake::EngineeringShear, Property::EnergyIsWork),
+    (Mistake::ShearSign, Property::EnergyIsWork),
+    (Mistake::OneShearInEnergy, Property::EnergyIsWork),
+    (Mistake::PlaneStressWave, Property::WaveSpeed),
+    (Mistake::PoissonSign, Property::WaveSpeed),
+];
+
+/// All mistakes of this file.
+pub(super) fn mistakes() -> Vec<Planted> {
+    let mut all = planted("elastic", MISTAKES, verdict);
+    all.extend(planted("plastic", FAULTS, found));
+    all.extend(planted("rate", TURNS, turned));
+    all.extend(planted("stored", STORES, stored));
+    all
+}
+
 #[test]
-fn mistakes_are_found_and_named() {
+fn laws_without_their_mistakes_pass() {
     assert_eq!(verdict(Mistake::None), None);
-    assert_eq!(verdict(Mistake::Slow), Some(Property::WaveSpeed));
-    assert_eq!(verdict(Mistake::Fast), Some(Property::WaveSpeed));
-    assert_eq!(verdict(Mistake::Energy), Some(Property::EnergyIsWork));
-    assert_eq!(verdict(Mistake::Prestressed), Some(Property::Unstressed));
-    assert_eq!(verdict(Mistake::Leaks), Some(Property::ZeroIncrement));
-    assert_eq!(verdict(Mistake::Jump), Some(Property::LinearForSmallIncrements));
-    assert_eq!(
-        verdict(Mistake::SpinIsStrain),
-        Some(Property::RotationKeepsEnergy)
-    );
+    assert_eq!(found(Fault::None), None);
+    assert_eq!(turned(Turn::Right), None);
+    assert_eq!(stored(Store::Right), None);
 }
 
 #[test]
@@ -362,15 +411,141 @@ fn found(fault: Fault) -> Option<Property> {
     both[0]
 }
 
-#[test]
-fn faults_of_a_law_whose_energy_is_not_its_work_are_found_and_named() {
-    assert_eq!(found(Fault::None), None);
-    assert_eq!(found(Fault::Energy), Some(Property::EnergyAtSmallStrain));
-    assert_eq!(found(Fault::OffPlane), Some(Property::ElasticConstants));
-    assert_eq!(found(Fault::Softening), Some(Property::Stable));
-    assert_eq!(found(Fault::Grows), Some(Property::NoEnergyFromNothing));
-    assert_eq!(found(Fault::Stiffer), Some(Property::UpdateIsALimit));
-    assert_eq!(found(Fault::Start), Some(Property::StartKeepsStress));
-    assert_eq!(found(Fault::Away), Some(Property::StrainForChange));
-    assert_eq!(found(Fault::Unknown), Some(Property::KnowsItsStress));
+const FAULTS: [(Fault, Property); 8] = [
+    (Fault::Energy, Property::EnergyAtSmallStrain),
+    (Fault::OffPlane, Property::ElasticConstants),
+    (Fault::Softening, Property::Stable),
+    (Fault::Grows, Property::NoEnergyFromNothing),
+    (Fault::Stiffer, Property::UpdateIsALimit),
+    (Fault::Start, Property::StartKeepsStress),
+    (Fault::Away, Property::StrainForChange),
+    (Fault::Unknown, Property::KnowsItsStress),
+];
+
+/// What a rate at large strain can get wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turn {
+    Right,
+    /// Nothing turns the stress.
+    NoSpin,
+    /// It turns the other way.
+    WrongWay,
+    /// The half is forgotten in the spin.
+    WholeSpin,
+    /// One side of the stress is turned.
+    OneSide,
+    /// The change of volume is forgotten, and the wave's speed knows of it.
+    NoVolume,
+}
+
+const TURNS: [(Turn, Property); 5] = [
+    (Turn::NoSpin, Property::Objective),
+    (Turn::WrongWay, Property::Objective),
+    (Turn::WholeSpin, Property::Objective),
+    (Turn::OneSide, Property::SymmetricStress),
+    (Turn::NoVolume, Property::WaveSpeed),
+];
+
+/// Hill's rate in the plane.
+#[derive(Clone, Copy, Debug)]
+struct Turning(Turn);
+
+impl ConstitutiveLaw<f64, 2> for Turning {
+    type State = ();
+
+    fn large_strain(&self) -> bool {
+        true
+    }
+
+    fn update(&self, increment: &SMatrix<f64, 2, 2>, stress: &mut SMatrix<f64, 2, 2>, _state: &mut ()) {
+        let strain = (increment + increment.transpose()) / 2.0;
+        let spin = increment - strain;
+        let old = *stress;
+        let turn = match self.0 {
+            Turn::NoSpin => SMatrix::zeros(),
+            Turn::WrongWay => old * spin - spin * old,
+            Turn::WholeSpin => (spin * old - old * spin) * 2.0,
+            Turn::OneSide => spin * old,
+            Turn::Right | Turn::NoVolume => spin * old - old * spin,
+        };
+        LinearElastic { moduli: moduli() }.update(increment, stress, &mut ());
+        *stress += turn;
+        if self.0 != Turn::NoVolume {
+            *stress -= old * strain.trace();
+        }
+    }
+
+    fn wave_speed(&self, density: f64, stress: &SMatrix<f64, 2, 2>, _state: &()) -> f64 {
+        Hill { moduli: moduli() }.wave_speed(density, stress, &())
+    }
+
+    fn energy_density(&self, stress: &SMatrix<f64, 2, 2>, _state: &()) -> f64 {
+        Hill { moduli: moduli() }.energy_density(stress, &())
+    }
+}
+
+fn turned(turn: Turn) -> Option<Property> {
+    check_law::<f64, 2, _>(&Turning(turn), &sample(), &hill::<2>())
+        .err()
+        .map(|failure| failure.property)
+}
+
+/// What a law that keeps its energy beside its stress can get wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Store {
+    Right,
+    /// The energy is that of the last increment, whatever came before.
+    LastIncrement,
+    /// The work of the stress that the increment began with.
+    OldStress,
+    /// Work that is taken away.
+    Sign,
+    /// A strain that is large where only the small one is meant: energy per volume and volume go apart.
+    LargeStrain,
+}
+
+const STORES: [(Store, Property); 4] = [
+    (Store::LastIncrement, Property::ZeroIncrement),
+    (Store::OldStress, Property::EnergyIsWork),
+    (Store::Sign, Property::EnergyIsWork),
+    (Store::LargeStrain, Property::EnergyIsWork),
+];
+
+/// Hooke's law at small strain whose state is the energy.
+#[derive(Clone, Copy, Debug)]
+struct Storing(Store);
+
+impl ConstitutiveLaw<f64, 2> for Storing {
+    type State = f64;
+
+    fn large_strain(&self) -> bool {
+        self.0 == Store::LargeStrain
+    }
+
+    fn update(&self, increment: &SMatrix<f64, 2, 2>, stress: &mut SMatrix<f64, 2, 2>, energy: &mut f64) {
+        let strain = (increment + increment.transpose()) / 2.0;
+        let old = *stress;
+        LinearElastic { moduli: moduli() }.update(increment, stress, &mut ());
+        let work = (old + *stress).dot(&strain) / 2.0;
+        match self.0 {
+            Store::LastIncrement => *energy = work,
+            Store::OldStress => *energy += old.dot(&strain),
+            Store::Sign => *energy -= work,
+            Store::Right | Store::LargeStrain => *energy += work,
+        }
+    }
+
+    fn wave_speed(&self, density: f64, _stress: &SMatrix<f64, 2, 2>, _energy: &f64) -> f64 {
+        (moduli::<f64>().p_wave() / density).sqrt()
+    }
+
+    fn energy_density(&self, _stress: &SMatrix<f64, 2, 2>, energy: &f64) -> f64 {
+        *energy
+    }
+}
+
+fn stored(store: Store) -> Option<Property> {
+    check_law::<f64, 2, _>(&Storing(store), &sample(), &SMALL_STRAIN)
+        .err()
+        .map(|failure| failure.property)
 }

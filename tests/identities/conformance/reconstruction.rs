@@ -14,6 +14,8 @@ use materialpoint::taylor::MOST_COMPONENTS;
 use materialpoint::testing::{Failure, Measure, Property, ReconstructionClaims, check_reconstruction};
 use nalgebra::{SVector, vector};
 
+use super::{Planted, planted};
+
 /// Particles of a layout without symmetry, four per cell and axis, that fill their cells.
 struct Sample<T, const D: usize> {
     grid: Grid<T, D>,
@@ -291,22 +293,34 @@ fn verdict<const AT: bool>(mistake: Mistake) -> Option<Property> {
         .map(|failure| failure.property)
 }
 
+const AT_PARTICLES: [(Mistake, Property); 4] = [
+    (Mistake::Leaks, Property::ConservesAmounts),
+    (Mistake::Cell, Property::StreamInCell),
+    (Mistake::Moved, Property::StreamsParticles),
+    (Mistake::Remembers, Property::PrepareForgets),
+];
+
+const ELSEWHERE: [(Mistake, Property); 3] = [
+    (Mistake::Weights, Property::Weights),
+    (Mistake::Nonlinear, Property::Linear),
+    (Mistake::FieldMovesPoints, Property::SamePoints),
+];
+
+/// All mistakes of this file.
+pub(super) fn mistakes() -> Vec<Planted> {
+    let mut all = planted("particles", AT_PARTICLES, verdict::<true>);
+    all.extend(planted("points", ELSEWHERE, verdict::<false>));
+    all.extend(planted("doors", DOORS, door));
+    all.extend(planted("fit", SLIPS, slip));
+    all
+}
+
 #[test]
-fn mistakes_are_found_and_named() {
+fn reconstructions_without_their_mistakes_pass() {
     assert_eq!(verdict::<true>(Mistake::None), None);
-    assert_eq!(verdict::<true>(Mistake::Leaks), Some(Property::ConservesAmounts));
-    assert_eq!(verdict::<true>(Mistake::Cell), Some(Property::StreamInCell));
-    assert_eq!(verdict::<true>(Mistake::Moved), Some(Property::StreamsParticles));
-    assert_eq!(
-        verdict::<true>(Mistake::Remembers),
-        Some(Property::PrepareForgets)
-    );
-    assert_eq!(verdict::<false>(Mistake::Weights), Some(Property::Weights));
-    assert_eq!(verdict::<false>(Mistake::Nonlinear), Some(Property::Linear));
-    assert_eq!(
-        verdict::<false>(Mistake::FieldMovesPoints),
-        Some(Property::SamePoints)
-    );
+    assert_eq!(door(Door::Right), None);
+    assert_eq!(door(Door::AllHard), None);
+    assert_eq!(slip(Slip::Right), None);
 }
 
 /// The library's own, a thousand cells from the origin: positions are rounded there, and the check allows for
@@ -447,18 +461,187 @@ impl Reconstruction<f64, 1> for Doors {
     }
 }
 
-#[test]
-fn ways_that_stream_something_else_are_found() {
-    let verdict = |door| {
-        check::<f64, 1, _>(Doors(Taylor::new(), door), 5, TAYLOR)
-            .err()
-            .map(|failure| failure.property)
+const DOORS: [(Door, Property); 5] = [
+    (Door::Cells, Property::CellsStreamTheSame),
+    (Door::Amounts, Property::CellsStreamTheSame),
+    (Door::Four, Property::FourStreamTheSame),
+    (Door::Lane, Property::FourStreamTheSame),
+    (Door::Hard, Property::FourStreamTheSame),
+];
+
+fn door(door: Door) -> Option<Property> {
+    check::<f64, 1, _>(Doors(Taylor::new(), door), 5, TAYLOR)
+        .err()
+        .map(|failure| failure.property)
+}
+
+/// Slips in a fit of one's own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Slip {
+    Right,
+    /// Cells of a single particle, which determines no line, are left out of what is conserved.
+    LosesLone,
+    /// The half of the cell size is forgotten where the points are placed.
+    OutOfCell,
+    /// And where they are weighed.
+    WholeWeights,
+    /// The line leans the other way.
+    SlopeSign,
+    /// Values weighed by the volumes of their particles, whose sum is not divided by.
+    WeightedSum,
+    /// The mean of the values, and no line: a claim of the degree too many.
+    MeanOnly,
+    /// Amounts are taken for densities.
+    AmountAsDensity,
+    /// The fit of the densities is not moved to keep the sum.
+    FreeFit,
+}
+
+const SLIPS: [(Slip, Property); 8] = [
+    (Slip::LosesLone, Property::ConservesAmounts),
+    (Slip::OutOfCell, Property::StreamInCell),
+    (Slip::WholeWeights, Property::Weights),
+    (Slip::SlopeSign, Property::Reproduces(1)),
+    (Slip::WeightedSum, Property::Weights),
+    (Slip::MeanOnly, Property::Reproduces(1)),
+    (Slip::AmountAsDensity, Property::ConservesAmounts),
+    (Slip::FreeFit, Property::ConservesAmounts),
+];
+
+/// A line through the values of each cell, streamed at two Gauss points.
+#[derive(Clone, Copy, Debug)]
+struct Lines(Slip);
+
+impl Lines {
+    /// Coefficients of the constant and of the coordinate from -1 to 1 that fit values in a cell, particle by
+    /// particle.
+    fn shares(self, cloud: &Cloud<'_, f64, 1>, cell: usize) -> Vec<(usize, f64, f64)> {
+        let particles = cloud.bins.particles_in(cell);
+        let (middle, half) = (
+            cloud.grid.centre(&cloud.grid.cell(cell))[0],
+            cloud.grid.cell_size()[0] / 2.0,
+        );
+        let count = particles.len() as f64;
+        let place = |p: u32| (cloud.positions[p as usize][0] - middle) / half;
+        let mean = particles.iter().map(|&p| place(p)).sum::<f64>() / count;
+        let spread: f64 = particles.iter().map(|&p| (place(p) - mean).powi(2)).sum();
+        let share = |&p: &u32| {
+            let mut slope = if spread > 0.0 {
+                (place(p) - mean) / spread
+            } else {
+                0.0
+            };
+            match self.0 {
+                Slip::SlopeSign => slope = -slope,
+                Slip::MeanOnly => slope = 0.0,
+                _ => {}
+            }
+            let mut constant = 1.0 / count;
+            if self.0 == Slip::WeightedSum {
+                constant *= cloud.volumes[p as usize] * count / (3.0 * half);
+            }
+            (p as usize, constant - slope * mean, slope)
+        };
+        particles.iter().map(share).collect()
+    }
+
+    /// Positions and weights.
+    fn points(self, cloud: &Cloud<'_, f64, 1>, cell: usize) -> [(f64, Point<f64, 1>, f64); 2] {
+        let cell = cloud.grid.cell(cell);
+        let (middle, half) = (cloud.grid.centre(&cell)[0], cloud.grid.cell_size()[0] / 2.0);
+        let place = if self.0 == Slip::OutOfCell {
+            2.0 * half
+        } else {
+            half
+        };
+        let weight = if self.0 == Slip::WholeWeights {
+            2.0 * half
+        } else {
+            half
+        };
+        [-1.0, 1.0].map(|side| {
+            let s = side / 3.0_f64.sqrt();
+            (s, Point::fixed(cell, vector![middle + s * place]), weight)
+        })
+    }
+
+    /// The constant and the slope of a field in a cell.
+    fn line<Q: Field<f64>>(
+        self,
+        cloud: &Cloud<'_, f64, 1>,
+        cell: usize,
+        value: impl Fn(usize) -> Q,
+    ) -> (Q, Q) {
+        let (mut constant, mut slope) = (Q::zero(), Q::zero());
+        for (p, c, s) in self.shares(cloud, cell) {
+            constant.add_scaled(c, value(p));
+            slope.add_scaled(s, value(p));
+        }
+        (constant, slope)
+    }
+}
+
+impl Reconstruction<f64, 1> for Lines {
+    const FIELDS_AT_PARTICLES: bool = false;
+    const AMOUNTS_AT_PARTICLES: bool = false;
+
+    fn prepare(&mut self, _cloud: &Cloud<'_, f64, 1>) {}
+
+    fn integrate<Q: Field<f64>>(
+        &mut self,
+        cloud: &Cloud<'_, f64, 1>,
+        value: impl Fn(usize) -> Q,
+        mut sink: impl FnMut(&Point<f64, 1>, Q),
+    ) {
+        for &cell in cloud.bins.occupied() {
+            let (constant, slope) = self.line(cloud, cell as usize, &value);
+            for (s, point, weight) in self.points(cloud, cell as usize) {
+                let mut weighted = constant.scaled(weight);
+                weighted.add_scaled(s * weight, slope);
+                sink(&point, weighted);
+            }
+        }
+    }
+
+    fn integrate_conserved<Q: Field<f64>>(
+        &mut self,
+        cloud: &Cloud<'_, f64, 1>,
+        amount: impl Fn(usize) -> Q,
+        mut sink: impl FnMut(&Point<f64, 1>, Q),
+    ) {
+        for &cell in cloud.bins.occupied() {
+            let particles = cloud.bins.particles_in(cell as usize);
+            if self.0 == Slip::LosesLone && particles.len() < 2 {
+                continue;
+            }
+            let density = |p: usize| match self.0 {
+                Slip::AmountAsDensity => amount(p),
+                _ => amount(p).scaled(1.0 / cloud.volumes[p]),
+            };
+            let (mut constant, slope) = self.line(cloud, cell as usize, density);
+            if !matches!(self.0, Slip::FreeFit | Slip::AmountAsDensity) {
+                constant = Q::zero();
+                for &p in particles {
+                    constant.add_scaled(1.0 / cloud.grid.cell_size()[0], amount(p as usize));
+                }
+            }
+            for (s, point, weight) in self.points(cloud, cell as usize) {
+                let mut weighted = constant.scaled(weight);
+                weighted.add_scaled(s * weight, slope);
+                sink(&point, weighted);
+            }
+        }
+    }
+}
+
+fn slip(slip: Slip) -> Option<Property> {
+    let claims = ReconstructionClaims {
+        conserves_amounts: true,
+        measure: Measure::OccupiedCells,
+        reproduces: 1,
+        integrates: Some(1),
     };
-    assert_eq!(verdict(Door::Right), None);
-    assert_eq!(verdict(Door::AllHard), None);
-    assert_eq!(verdict(Door::Cells), Some(Property::CellsStreamTheSame));
-    assert_eq!(verdict(Door::Amounts), Some(Property::CellsStreamTheSame));
-    assert_eq!(verdict(Door::Four), Some(Property::FourStreamTheSame));
-    assert_eq!(verdict(Door::Lane), Some(Property::FourStreamTheSame));
-    assert_eq!(verdict(Door::Hard), Some(Property::FourStreamTheSame));
+    check::<f64, 1, _>(Lines(slip), 4, claims)
+        .err()
+        .map(|failure| failure.property)
 }
