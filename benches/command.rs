@@ -2,10 +2,10 @@
 //!
 //! `cargo bench --bench command [FILTER ...]`: only the cases whose names contain every FILTER.
 //!
-//! Each measurement is a run of the built command. One thread and two take turns, so that a machine that is busy for
-//! a while slows both; the median and the best time of its step loop per particle and step are printed. Two threads
-//! need two processors: on a busy machine the best times alone say something, and two cores that share no cache are
-//! slower together than two that do.
+//! Each measurement is a run of the built command. One thread and two take turns, so that a machine that is
+//! busy for a while slows both; the median and the best time of its step loop per particle and step are
+//! printed. Two threads need two processors: on a busy machine the best times alone say something, and two
+//! cores that share no cache are slower together than two that do.
 
 use std::error::Error;
 use std::path::Path;
@@ -37,8 +37,8 @@ impl Case {
         (self.cells * self.per_cell).pow(self.axes as u32)
     }
 
-    /// As TOML. Nothing rests for long: tiny numbers would be denormal and slow. A wave takes ten steps through a
-    /// cell.
+    /// As TOML. Nothing rests for long: tiny numbers would be denormal and slow. A wave takes ten steps
+    /// through a cell.
     fn scene(&self) -> String {
         let each = |entry: &str| vec![entry; self.axes].join(", ");
         let [cells, per_cell] = [self.cells, self.per_cell].map(|n| each(&n.to_string()));

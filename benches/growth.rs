@@ -1,15 +1,15 @@
-//! How cost grows: time per particle and step, and memory per particle, from a thousand to ten million particles, with few
-//! and many of them per cell, for every method.
+//! How cost grows: time per particle and step, and memory per particle, from a thousand to ten million
+//! particles, with few and many of them per cell, for every method.
 //!
 //! `cargo bench --bench growth` prints the tables and writes them into `docs/verification/speed-and-error.md`
-//! with the picture `docs/pictures/growth.svg`; `cargo bench --bench growth -- 1e6` stops at a million particles
-//! and writes nothing.
+//! with the picture `docs/pictures/growth.svg`; `cargo bench --bench growth -- 1e6` stops at a million
+//! particles and writes nothing.
 //!
-//! Each measurement is a process of its own, so that memory is what this one stepper made resident and nothing freed
-//! before. Where the system tells it (Linux), the time that the process was given counts, if that is less than the time on
-//! the wall: whatever else the machine does can only add. All bodies move smoothly and nowhere rest (decayed noise would be
-//! denormal numbers); particles lie at random within their shares of a cell, so that some cross an edge in nearly every
-//! step, as they do in a run.
+//! Each measurement is a process of its own, so that memory is what this one stepper made resident and
+//! nothing freed before. Where the system tells it (Linux), the time that the process was given counts, if
+//! that is less than the time on the wall: whatever else the machine does can only add. All bodies move
+//! smoothly and nowhere rest (decayed noise would be denormal numbers); particles lie at random within their
+//! shares of a cell, so that some cross an edge in nearly every step, as they do in a run.
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -40,7 +40,8 @@ const SIZES: [usize; 9] = [
 const DRAWN: usize = 8;
 /// A measurement steps at least so long (s).
 const LEAST_SECONDS: f64 = 0.25;
-/// Steps from one fresh start to the next: the smallest bodies must not swing until published TLS has made them unstable.
+/// Steps from one fresh start to the next: the smallest bodies must not swing until published TLS has made
+/// them unstable.
 const MOST_STEPS: usize = 64;
 /// Below this the kilobytes of a process are too coarse for the bytes of a particle.
 const LEAST_RESIDENT: usize = 300_000;
@@ -137,8 +138,9 @@ impl Clock {
         self.given = self.given.zip(given).map(|(sum, more)| sum + more);
     }
 
-    /// Of one of `batches`: the fastest on the wall, or if that is less what they were given on average. The one is an
-    /// accident where a batch is longer than the machine leaves alone, the other coarse where it is short.
+    /// Of one of `batches`: the fastest on the wall, or if that is less what they were given on average. The
+    /// one is an accident where a batch is longer than the machine leaves alone, the other coarse where it is
+    /// short.
     fn of_a_batch(&self, batches: usize) -> f64 {
         let mean = self.given.map_or(f64::INFINITY, |sum| sum / batches as f64);
         self.fastest.min(mean)
@@ -230,7 +232,8 @@ struct Growth {
     found: Vec<Vec<(usize, Found)>>,
 }
 
-/// Sizes take turns among the methods, so that a busy minute of the machine does not fall on one method's curve.
+/// Sizes take turns among the methods, so that a busy minute of the machine does not fall on one method's
+/// curve.
 fn grow(most: usize) -> Result<Vec<Growth>, Box<dyn Error>> {
     let none = |method| Growth {
         method,

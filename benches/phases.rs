@@ -1,5 +1,6 @@
-//! What a second phase costs: the time of a two-phase step over that of a one-phase step of the same method, and of implicit
-//! over explicit drag. Medians of alternating runs, smooth motion everywhere (decayed noise would be denormal numbers).
+//! What a second phase costs: the time of a two-phase step over that of a one-phase step of the same method,
+//! and of implicit over explicit drag. Medians of alternating runs, smooth motion everywhere (decayed noise
+//! would be denormal numbers).
 //!
 //! `cargo bench --bench phases`
 

@@ -1,8 +1,8 @@
 //! Who keeps, gains and loses energy in long runs: the bar for 8 and for 10 seconds, written into
 //! `docs/verification/long-runs.md`.
 //!
-//! `cargo run --release --example long_runs` measures all anew, in some minutes: the pictures in `docs/pictures/` and what
-//! stands between the markers of the page. The prose around them is not touched.
+//! `cargo run --release --example long_runs` measures all anew, in some minutes: the pictures in
+//! `docs/pictures/` and what stands between the markers of the page. The prose around them is not touched.
 
 use std::error::Error;
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! A constitutive law of your own: Hencky's logarithmic law, in one file.
 //!
-//! The library has the law too, as a rate without a state ([`materialpoint::law::Logarithmic`]); this one remembers its strain,
-//! to show how a law does that.
+//! The library has the law too, as a rate without a state ([`materialpoint::law::Logarithmic`]); this one
+//! remembers its strain, to show how a law does that.
 //!
 //! `cargo run --release --example own_law`
 
@@ -59,8 +59,8 @@ impl<T: Scalar> Default for LogStrain<T> {
     }
 }
 
-/// Corrections a bar at its free end by 1 % of the modulus and returns its mean strain when the oscillation has the
-/// same number of halves behind and before it: the static strain, about 1 %.
+/// Pulls a bar at its free end by 1 % of the modulus and returns its mean strain when the oscillation
+/// has the same number of halves behind and before it: the static strain, about 1 %.
 pub fn run() -> Result<f64, Box<dyn Error>> {
     let (length, density, modulus): (f64, f64, f64) = (1.0, 1e3, 1e5);
     let grid = Grid::new(vector![0.0], vector![1.2 * length], [24])?;

@@ -1,8 +1,8 @@
 //! Which method buys the least error for the most speed: studies of the benchmarks, written into
 //! `docs/verification/speed-and-error.md`.
 //!
-//! `cargo run --release --example speed_and_error` measures all anew: the pictures in `docs/pictures/` and what stands
-//! between the markers of the page. The prose around them is not touched.
+//! `cargo run --release --example speed_and_error` measures all anew: the pictures in `docs/pictures/` and
+//! what stands between the markers of the page. The prose around them is not touched.
 
 use std::error::Error;
 use std::fs;

@@ -1,11 +1,12 @@
 //! Which time steps are stable where a bar lies anyhow in the grid: maps of step and offset, for
 //! `docs/verification/stability.md`.
 //!
-//! `cargo run --release --example stability_map` draws them anew, in some minutes: `docs/pictures/stability-*.svg`.
+//! `cargo run --release --example stability_map` draws them anew, in some minutes:
+//! `docs/pictures/stability-*.svg`.
 //!
-//! The bar of `tests/hard_cases/critical_step.rs`: linear elastic, small strain, eight cells long with free ends, so that its
-//! end cells are filled as its offset against the grid says. Particles start with velocities of 1e-9 of the wave's speed without
-//! any pattern.
+//! The bar of `tests/hard_cases/critical_step.rs`: linear elastic, small strain, eight cells long with free
+//! ends, so that its end cells are filled as its offset against the grid says. Particles start with
+//! velocities of 1e-9 of the wave's speed without any pattern.
 
 use std::error::Error;
 use std::path::Path;
@@ -142,7 +143,8 @@ impl Map {
 /// Numbers of particles per cell that are mapped.
 pub const PER_CELL: [usize; 3] = [2, 4, 8];
 
-/// The picture of a basis, and for every method and number of particles how much grows below 0.95 of the prediction.
+/// The picture of a basis, and for every method and number of particles how much grows below 0.95 of the
+/// prediction.
 pub fn picture(basis: Basis, care: Care) -> Result<(String, Vec<String>), Box<dyn Error>> {
     use ReconstructionKind::{RelaxedTaylor, Shepard, Taylor};
     let (mut panels, mut counts) = (Vec::new(), Vec::new());

@@ -1,10 +1,10 @@
-//! Dual domain with sub-points on the compacting column: the journal's Table 8, ours beside the papers'. What it shows is
-//! explained in `docs/verification/sub-points.md`.
+//! Dual domain with sub-points on the compacting column: the journal's Table 8, ours beside the papers'. What
+//! it shows is explained in `docs/verification/sub-points.md`.
 //!
 //! `cargo run --release --example sub_points`
 //!
-//! Source: Dhakal & Zhang, J. Comput. Phys. 325 (2016); Wobbes, Moeller, Galavi & Vuik, Int. J. Numer. Methods Eng. 117 (2019),
-//! section 6.2: H = 50 m, 50 cells, 20 particles per cell, 5000 steps of 1e-4 s.
+//! Source: Dhakal & Zhang, J. Comput. Phys. 325 (2016); Wobbes, Moeller, Galavi & Vuik, Int. J. Numer.
+//! Methods Eng. 117 (2019), section 6.2: H = 50 m, 50 cells, 20 particles per cell, 5000 steps of 1e-4 s.
 
 use std::error::Error;
 use std::time::Instant;
@@ -29,8 +29,8 @@ const BODY_FORCE: f64 = -200.0;
 const STEP: f64 = 1e-4;
 const STEPS: u32 = 5000;
 
-/// Dual domain with the weights alpha and 1 - alpha of its gradient exchanged: at cell edges it jumps by all that the linear
-/// gradient jumps there.
+/// Dual domain with the weights alpha and 1 - alpha of its gradient exchanged: at cell edges it jumps by all
+/// that the linear gradient jumps there.
 #[derive(Clone, Copy, Debug)]
 pub struct Swapped;
 
@@ -39,7 +39,8 @@ impl<T: Scalar> AxisBasis<T, 4> for Swapped {
         cells + 1
     }
 
-    /// Of the nodes below, left of, right of and above the cell; at an end of the axis one of them is missing.
+    /// Of the nodes below, left of, right of and above the cell; at an end of the axis one of them is
+    /// missing.
     fn evaluate<K: Lanes<T>>(&self, k: K, at: AxisCell, unit: K::V) -> Functions<K::V, 4> {
         let (zero, one, half) = (
             k.splat(T::zero()),
@@ -179,7 +180,8 @@ pub struct Comparison {
     pub swapped: Outcome,
 }
 
-/// Dual domain + TLS, and every number in `counts`. All are run `repeats` times in turn; the median of the times counts.
+/// Dual domain + TLS, and every number in `counts`. All are run `repeats` times in turn; the median of the
+/// times counts.
 pub fn run(counts: &[usize], repeats: usize) -> Result<(Outcome, Vec<Comparison>), Box<dyn Error>> {
     let exact = Exact::new()?;
     let (mut taylor, mut rows) = (Vec::new(), vec![(Vec::new(), Vec::new()); counts.len()]);
@@ -211,8 +213,8 @@ fn median(mut runs: Vec<Outcome>) -> Outcome {
     runs[runs.len() / 2]
 }
 
-/// Sub-points, error, and time over that of dual domain + TLS, as printed; for one sub-point the journal's Figure 10, without a
-/// time.
+/// Sub-points, error, and time over that of dual domain + TLS, as printed; for one sub-point the journal's
+/// Figure 10, without a time.
 const PAPER: [(usize, f64, Option<f64>); 8] = [
     (1, 4.4555e-2, None),
     (2, 3.4086e-2, Some(0.3037)),

@@ -1,10 +1,12 @@
 //! Virtual points: the journal's Figures 4 and 5, drawn anew for `docs/verification/stability.md`.
 //!
-//! `cargo run --release --example virtual_points` draws `docs/pictures/virtual-points.svg` and prints the errors.
+//! `cargo run --release --example virtual_points` draws `docs/pictures/virtual-points.svg` and prints the
+//! errors.
 //!
-//! Source: Wobbes, Moeller, Galavi & Vuik, Int. J. Numer. Methods Eng. 117 (2019), section 5.3: `sin x + 2` on `[0, 4 pi]` in four
-//! cells from eleven points. The second cell holds two, at `pi` and `5 pi/3`, where the quadratic function is -1/3 of the linear one.
-//! Nine places are not published and chosen here; the three of the third cell are uniform, as the journal says.
+//! Source: Wobbes, Moeller, Galavi & Vuik, Int. J. Numer. Methods Eng. 117 (2019), section 5.3: `sin x + 2`
+//! on `[0, 4 pi]` in four cells from eleven points. The second cell holds two, at `pi` and `5 pi/3`, where
+//! the quadratic function is -1/3 of the linear one. Nine places are not published and chosen here; the three
+//! of the third cell are uniform, as the journal says.
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -165,7 +167,8 @@ pub fn picture(found: &Comparison) -> String {
         range: (0.0, 4.0),
         log: false,
     };
-    // What the neighbours say at their Gauss points next to the edges is what they say there, as far as one can see.
+    // What the neighbours say at their Gauss points next to the edges is what they say there, as far as one
+    // can see.
     let lent = [
         (PI, found.with.curve[GAUSS_POINTS - 1].1),
         (2.0 * PI, found.with.curve[2 * GAUSS_POINTS].1),

@@ -16,8 +16,8 @@ pub trait Field<T>: Copy + Zero + Send + Sync {
     /// Number of scalars in it.
     const COMPONENTS: usize;
 
-    /// Which of its scalars, the `i`-th as bit `i`, are densities of something that is nowhere negative (mass). Conservative
-    /// reconstructions keep them positive where they stream them.
+    /// Which of its scalars, the `i`-th as bit `i`, are densities of something that is nowhere negative
+    /// (mass). Conservative reconstructions keep them positive where they stream them.
     const DENSITIES: u32 = 0;
 
     /// Its `i`-th scalar, `i < COMPONENTS`.
@@ -77,7 +77,8 @@ impl<T: Scalar, const R: usize, const C: usize> Field<T> for SMatrix<T, R, C> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Symmetric<T: Scalar, const D: usize>(pub SMatrix<T, D, D>);
 
-/// Number of the component at `(row, column)` of a symmetric tensor: the diagonal first, then the rows above it.
+/// Number of the component at `(row, column)` of a symmetric tensor: the diagonal first, then the rows above
+/// it.
 #[inline(always)]
 pub(crate) const fn symmetric_component<const D: usize>(row: usize, column: usize) -> usize {
     if row == column {

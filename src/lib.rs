@@ -2,8 +2,9 @@
 //!
 #![doc = include_str!("../docs/formulas.html")]
 //!
-//! MPM moves material as particles through a fixed grid. A step maps particle data to the grid's degrees of freedom (DOFs),
-//! solves the balance of momentum there, and carries the particles along. Four things can be chosen, each as a type:
+//! MPM moves material as particles through a fixed grid. A step maps particle data to the grid's degrees of
+//! freedom (DOFs), solves the balance of momentum there, and carries the particles along. Four things can be
+//! chosen, each as a type:
 //!
 //! | trait | says | comes as |
 //! |---|---|---|
@@ -12,9 +13,9 @@
 //! | [`ConstitutiveLaw`](law::ConstitutiveLaw) | how stress follows strain | [`LinearElastic`](law::LinearElastic), [`Hill`](law::Hill), [`NeoHookean`](law::NeoHookean), [`StVenantKirchhoff`](law::StVenantKirchhoff), [`Hencky`](law::Hencky), [`Logarithmic`](law::Logarithmic), [`VonMises`](law::VonMises), [`DruckerPrager`](law::DruckerPrager), [`NewtonianFluid`](law::NewtonianFluid) |
 //! | [`Phase`](phase::Phase) | what shares the pores with the solid | [`OnePhase`](phase::OnePhase), [`TwoPhase`](phase::TwoPhase) |
 //!
-//! One [`Stepper`](stepper::Stepper) is generic over all four, over the [`Scalar`](scalar::Scalar) and over the dimension.
-//! The weak form needs integrals such as $\int\sigma\nabla\phi_i$; a reconstruction streams points with weighted values,
-//! and one assembly serves all:
+//! One [`Stepper`](stepper::Stepper) is generic over all four, over the [`Scalar`](scalar::Scalar) and over
+//! the dimension. The weak form needs integrals such as $\int\sigma\nabla\phi_i$; a reconstruction streams
+//! points with weighted values, and one assembly serves all:
 //!
 //! $$\int\sigma\nabla\phi_i \approx \sum_q w_q \sigma_q \nabla\phi_i(x_q).$$
 //!
@@ -55,7 +56,8 @@
 //! * a law of your own: [`law`]; a basis: [`basis`]; check them with [`testing`];
 //! * the algorithm: [`stepper`]; the fit: [`taylor`];
 //! * exact and converged solutions: [`mod@reference`];
-//! * scenes in TOML, runs and studies of them, files: the crate `materialpoint-command`, which is the command too.
+//! * scenes in TOML, runs and studies of them, files: the crate `materialpoint-command`, which is the command
+//!   too.
 //!
 //! Feature `rayon` (default): threads, any number of which gives the bits of one.
 

@@ -74,7 +74,8 @@ impl ReconstructionKind {
 }
 
 impl ReconstructionKind {
-    /// Whether it exists for so many axes and phases: the spline along one axis, relaxed Taylor in one phase or along one axis.
+    /// Whether it exists for so many axes and phases: the spline along one axis, relaxed Taylor in one phase
+    /// or along one axis.
     pub fn is_known(self, dimension: usize, phases: usize) -> bool {
         match self {
             Self::Shepard | Self::Taylor => true,
@@ -84,15 +85,16 @@ impl ReconstructionKind {
     }
 }
 
-/// A basis family with a reconstruction, written `basis+reconstruction`, with sub-points `dual-domain+shepard4`.
+/// A basis family with a reconstruction, written `basis+reconstruction`, with sub-points
+/// `dual-domain+shepard4`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Method {
     /// The basis family.
     pub basis: Basis,
     /// The reconstruction.
     pub reconstruction: ReconstructionKind,
-    /// Sub-points of each particle's domain, 1 to [`SubPoints::MOST`]; one is the particle itself. More with dual domain and
-    /// Shepard only.
+    /// Sub-points of each particle's domain, 1 to [`SubPoints::MOST`]; one is the particle itself. More with
+    /// dual domain and Shepard only.
     pub subpoints: u8,
 }
 
@@ -108,7 +110,8 @@ pub trait MethodVisitor<T: Scalar, const D: usize = 1> {
         R: Reconstruction<T, D> + Clone + Send + 'static;
 }
 
-/// The reconstructions that exist in `D` dimensions, by name: the number of Taylor functions is a type of each.
+/// The reconstructions that exist in `D` dimensions, by name: the number of Taylor functions is a type of
+/// each.
 pub trait KnownIn<const D: usize> {
     /// Calls `visitor` with `basis` and the reconstruction's type; `None` if there is none in `D` dimensions.
     fn with_basis<T, B, V>(self, basis: B, visitor: V) -> Option<V::Output>
@@ -249,9 +252,10 @@ impl Method {
         }
     }
 
-    /// Calls `visitor` with the method's types, in as many dimensions as it is for. `None` for a degree that does not exist, a
-    /// number of sub-points that the pair does not have, or a reconstruction that these dimensions do not have. Beyond one
-    /// dimension, where each takes seconds to compile, cubic B-splines and sub-points are left to callers that name the types.
+    /// Calls `visitor` with the method's types, in as many dimensions as it is for. `None` for a degree that
+    /// does not exist, a number of sub-points that the pair does not have, or a reconstruction that these
+    /// dimensions do not have. Beyond one dimension, where each takes seconds to compile, cubic B-splines and
+    /// sub-points are left to callers that name the types.
     pub fn dispatch<T, V, const D: usize>(self, visitor: V) -> Option<V::Output>
     where
         T: Scalar,

@@ -7,8 +7,8 @@ use crate::scalar::Scalar;
 /// A value that can be told as numbers and made from them again, to the bit.
 ///
 /// What a law remembers of a particle and what a phase carries must be able to, where a stepper is to be a
-/// [`Simulation`](crate::stepper::Simulation): a checkpoint holds them. `()`, a number, an array and a vector or matrix of
-/// nalgebra are. A state of your own hands its fields over one after the other:
+/// [`Simulation`](crate::stepper::Simulation): a checkpoint holds them. `()`, a number, an array and a vector
+/// or matrix of nalgebra are. A state of your own hands its fields over one after the other:
 ///
 /// ```
 /// use materialpoint::record::Record;

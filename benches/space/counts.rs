@@ -17,11 +17,11 @@ const VALUES: usize = 9;
 
 /// Of plain MPM in three passes, small strain.
 ///
-/// *Bytes* are those of the particle arrays, each counted once for every pass that reads and once for every pass that writes
-/// it; DOFs are shared by the particles of some rows of cells and stay in the cache.
+/// *Bytes* are those of the particle arrays, each counted once for every pass that reads and once for every
+/// pass that writes it; DOFs are shared by the particles of some rows of cells and stay in the cache.
 ///
-/// *Operations* (a multiplication and an addition each count) are those of sums along one axis after the other, the cheapest
-/// way known here: [`interpolation`]; a sum at the DOFs is the same the other way round.
+/// *Operations* (a multiplication and an addition each count) are those of sums along one axis after the
+/// other, the cheapest way known here: [`interpolation`]; a sum at the DOFs is the same the other way round.
 pub fn plain<const D: usize>() -> Counts {
     let vector = NUMBER * D;
     let (tensor, cell) = (vector * D, 4 * D);
@@ -40,8 +40,8 @@ pub fn plain<const D: usize>() -> Counts {
     }
 }
 
-/// Operations of interpolating a scalar, and `slopes` times its slopes, from `W^D` DOFs: along axis `k` its value and the
-/// slopes along the axes so far, for `W^(D - 1 - k)` rows.
+/// Operations of interpolating a scalar, and `slopes` times its slopes, from `W^D` DOFs: along axis `k` its
+/// value and the slopes along the axes so far, for `W^(D - 1 - k)` rows.
 fn interpolation<const D: usize>(slopes: usize) -> usize {
     let along = |k: usize| (1 + slopes * (k + 1)) * WIDTH.pow((D - 1 - k) as u32);
     2 * WIDTH * (0..D).map(along).sum::<usize>()

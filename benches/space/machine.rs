@@ -1,4 +1,5 @@
-//! What the machine can do: bandwidth of memory and floating-point operations a second, of one thread, measured.
+//! What the machine can do: bandwidth of memory and floating-point operations a second, of one thread,
+//! measured.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -12,7 +13,8 @@ const NUMBERS: usize = 4_200_000;
 const SUMS: usize = 12;
 const REPEATS: usize = 7;
 
-/// Bytes a second read and written by `a = b + 3 c` (24 bytes an element, as in STREAM's triad), the best of several.
+/// Bytes a second read and written by `a = b + 3 c` (24 bytes an element, as in STREAM's triad), the best of
+/// several.
 pub fn bandwidth() -> f64 {
     let (mut a, b, c) = (vec![0.0; NUMBERS], vec![1.0; NUMBERS], vec![2.0; NUMBERS]);
     let seconds = best(|| {

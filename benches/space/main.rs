@@ -1,9 +1,11 @@
-//! Whole steps in two and three dimensions: millions of particle-steps a second, and how near they come to the machine.
+//! Whole steps in two and three dimensions: millions of particle-steps a second, and how near they come to
+//! the machine.
 //!
 //! `cargo bench --bench space [FILTER ...]`: only the cases whose names contain every FILTER.
 //!
-//! Quadratic B-splines, `f64`, full stress tensor, MUSL, two particles a cell and axis (three where TLS is relaxed, and beside it); Hooke's law unless the name says
-//! otherwise. Cases of one size take turns; the median and the best of several samples are printed, on one thread and on two.
+//! Quadratic B-splines, `f64`, full stress tensor, MUSL, two particles a cell and axis (three where TLS is
+//! relaxed, and beside it); Hooke's law unless the name says otherwise. Cases of one size take turns; the
+//! median and the best of several samples are printed, on one thread and on two.
 
 mod body;
 mod counts;
@@ -22,9 +24,9 @@ use counts::Counts;
 use yardstick::Plain;
 
 const SAMPLES: usize = 11;
-/// Least time (s) of a sample on one thread and on more. The system counts what a thread ran up to its last tick, some milliseconds
-/// ago: samples of ten milliseconds came out up to twice too fast. The clock on the wall, for more threads, needs no such care,
-/// and published TLS does not bear ever more steps.
+/// Least time (s) of a sample on one thread and on more. The system counts what a thread ran up to its last
+/// tick, some milliseconds ago: samples of ten milliseconds came out up to twice too fast. The clock on the
+/// wall, for more threads, needs no such care, and published TLS does not bear ever more steps.
 const SAMPLE: [f64; 2] = [0.25, 0.1];
 
 /// Something that steps.
@@ -138,8 +140,9 @@ fn space(particles: usize) -> Vec<Case> {
     cases
 }
 
-/// Relaxed TLS, whose matrix is solved twice a step, beside published TLS with the consistent mass. Three particles a cell and axis: with
-/// two and B-splines it gains energy in the some thousand steps of a measurement.
+/// Relaxed TLS, whose matrix is solved twice a step, beside published TLS with the consistent mass. Three
+/// particles a cell and axis: with two and B-splines it gains energy in the some thousand steps of a
+/// measurement.
 fn relaxed() -> Vec<Case> {
     let (consistent, constrained) = (VelocityMass::Consistent, VelocityMass::Constrained);
     let mut cases = Vec::new();
@@ -164,7 +167,8 @@ fn relaxed() -> Vec<Case> {
     cases
 }
 
-/// Seconds that `work` takes; on one thread those that it ran, where the system tells: others may share the machine.
+/// Seconds that `work` takes; on one thread those that it ran, where the system tells: others may share the
+/// machine.
 fn time(threads: usize, work: impl FnOnce()) -> f64 {
     let ran = || {
         let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;

@@ -1,7 +1,8 @@
 //! The yardstick: the same step as a C programmer would write it, arrays and loops, nothing general.
 //!
-//! Two dimensions, quadratic B-splines, Shepard, Hooke's law, MUSL, without the stepper's checks and diagnostics, in the
-//! order in which the particles come. The body keeps off the outermost cells, so the repeated knots there are left out.
+//! Two dimensions, quadratic B-splines, Shepard, Hooke's law, MUSL, without the stepper's checks and
+//! diagnostics, in the order in which the particles come. The body keeps off the outermost cells, so the
+//! repeated knots there are left out.
 
 use super::body::{Body, DENSITY, POISSON, YOUNG, velocity};
 

@@ -17,8 +17,8 @@ use super::yardstick::Bar;
 const DENSITY: f64 = 2e3;
 const MODULUS: f64 = 4e4;
 
-/// Time step times number of cells (s): a ten-thousandth of the time that a wave takes through a cell, so that the many steps of
-/// a measurement change little.
+/// Time step times number of cells (s): a ten-thousandth of the time that a wave takes through a cell, so
+/// that the many steps of a measurement change little.
 pub const STEP: f64 = 2e-5;
 
 /// Particles between the ends of the bar.

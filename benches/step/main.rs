@@ -1,7 +1,7 @@
 //! One step of each method against a plain hand-written loop, over the number of particles.
 //!
-//! `cargo bench --bench step [FILTER]`; criterion prints millions of particle-steps per second as `Melem/s`. Filter `f32` for single beside
-//! double precision.
+//! `cargo bench --bench step [FILTER]`; criterion prints millions of particle-steps per second as `Melem/s`.
+//! Filter `f32` for single beside double precision.
 
 mod bar;
 mod yardstick;
@@ -65,8 +65,9 @@ fn yardsticks_agree(layout: Layout, step: f64) {
     }
 }
 
-/// Single beside double precision. With 1e6 particles a cell is given 64: eight would be in cells of some hundred single-precision
-/// numbers, and one particle in ten so near an edge that its cell is looked up in each step.
+/// Single beside double precision. With 1e6 particles a cell is given 64: eight would be in cells of some
+/// hundred single-precision numbers, and one particle in ten so near an edge that its cell is looked up in
+/// each step.
 fn precisions(criterion: &mut Criterion) {
     let forcing = fixed_ends();
     for (per_cell, particles) in [(8, 100_000), (64, 1_000_000)] {

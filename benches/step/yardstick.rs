@@ -1,6 +1,7 @@
 //! The yardstick: one step of plain MPM as a C programmer would write it, arrays and loops, nothing general.
 //!
-//! One dimension, Hill's law, both ends fixed, Shepard: the same work as the stepper's, without its checks and diagnostics.
+//! One dimension, Hill's law, both ends fixed, Shepard: the same work as the stepper's, without its checks
+//! and diagnostics.
 
 /// Particles and DOFs.
 pub struct Bar {
@@ -134,7 +135,8 @@ fn divide(sums: &mut [f64], mass: &[f64], dofs: usize) {
     sums[dofs - 1] = 0.0;
 }
 
-/// First DOF, values and slopes (per cell) of the quadratic B-splines on open knots at `s` cells from the left end.
+/// First DOF, values and slopes (per cell) of the quadratic B-splines on open knots at `s` cells from the
+/// left end.
 #[inline(always)]
 fn quadratic(s: f64, cells: usize) -> (usize, [f64; 3], [f64; 3]) {
     let i = s as usize;

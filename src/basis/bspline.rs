@@ -4,8 +4,8 @@ use super::tensor::{AxisBasis, AxisCell, Functions};
 use crate::scalar::Scalar;
 use crate::simd::{Lanes, Number, each, inlined};
 
-/// B-splines of degree $P$ on an open uniform knot vector $\xi$ (Cox-de Boor; Steffen, Kirby & Berzins 2008, journal section
-/// 4): `cells + P` DOFs along an axis, the first and last of which interpolate.
+/// B-splines of degree $P$ on an open uniform knot vector $\xi$ (Cox-de Boor; Steffen, Kirby & Berzins 2008,
+/// journal section 4): `cells + P` DOFs along an axis, the first and last of which interpolate.
 ///
 /// $$\phi_{i,l}(x) = \frac{x-\xi_i}{\xi_{i+l}-\xi_i}\phi_{i,l-1}(x) +
 /// \frac{\xi_{i+l+1}-x}{\xi_{i+l+1}-\xi_{i+1}}\phi_{i+1,l-1}(x),\qquad \phi_{i,0} = 1 \text{ in span } i.$$
@@ -61,7 +61,8 @@ fn all_knots_distinct(degree: usize, cells: usize, cell: usize) -> bool {
     cell + 1 >= degree && cell + degree <= cells
 }
 
-/// Functions of a cell whose knots are all distinct, written out: the quadratic ones take a third of the triangle's operations.
+/// Functions of a cell whose knots are all distinct, written out: the quadratic ones take a third of the
+/// triangle's operations.
 #[inline(always)]
 fn inner<T: Scalar, K: Lanes<T>, const W: usize>(k: K, unit: K::V) -> Functions<K::V, W> {
     let number = inlined(

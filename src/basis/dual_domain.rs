@@ -11,17 +11,19 @@ use crate::particles::Bins;
 use crate::scalar::Scalar;
 use crate::simd::{Lanes, Number, One, each};
 
-/// Dual domain basis (Zhang, Ma & Giguere 2011, journal section 3.3): values of the linear hats, smoothed gradients
+/// Dual domain basis (Zhang, Ma & Giguere 2011, journal section 3.3): values of the linear hats, smoothed
+/// gradients
 ///
 /// $$\overline{\nabla\phi_i} = \alpha\nabla\phi_i + (1-\alpha)\widetilde{\nabla\phi_i},\quad
 /// \widetilde{\nabla\phi_i}(x) = \sum_j \frac{\phi_j(x)}{V_j}\int\phi_j\nabla\phi_i,\quad
 /// V_j = \int\phi_j,\quad \alpha = 2\sum_i\phi_i\phi_{i+1}.$$
 ///
-/// $\alpha$ vanishes at cell edges, so the gradient is continuous there and reaches one cell further than the value. Node
-/// $j$'s smoothed slope of a nodal field is the central difference, at the ends of the domain the one-sided one (there both
-/// the integral and $V_j$ are halved). The domain of the integrals is the cells that hold particles: at a free surface
-/// inside the grid a node beyond it moves with nothing, and a central difference over it would be no slope. Beyond one
-/// dimension the gradient along an axis takes this slope along that axis and linear values along the others.
+/// $\alpha$ vanishes at cell edges, so the gradient is continuous there and reaches one cell further than the
+/// value. Node $j$'s smoothed slope of a nodal field is the central difference, at the ends of the domain the
+/// one-sided one (there both the integral and $V_j$ are halved). The domain of the integrals is the cells
+/// that hold particles: at a free surface inside the grid a node beyond it moves with nothing, and a central
+/// difference over it would be no slope. Beyond one dimension the gradient along an axis takes this slope
+/// along that axis and linear values along the others.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DualDomain {
@@ -61,8 +63,8 @@ impl DualDomain {
     }
 }
 
-/// Values and slopes of the nodes `first_dof(at)` to `first_dof(at) + 3` in a cell; `ends` says on which sides the domain
-/// ends there.
+/// Values and slopes of the nodes `first_dof(at)` to `first_dof(at) + 3` in a cell; `ends` says on which
+/// sides the domain ends there.
 #[inline(always)]
 fn functions<T: Scalar, K: Lanes<T>>(k: K, at: AxisCell, unit: K::V, ends: [bool; 2]) -> Functions<K::V, 4> {
     let (zero, one) = (k.splat(T::zero()), k.splat(T::one()));
@@ -166,8 +168,9 @@ impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
     }
 
     fn dof_window(&self, grid: &Grid<T, D>, first: &Cell<D>, last: &Cell<D>) -> Range<usize> {
-        // The four nodes of a cell at an end lie otherwise about it than those of others, so their numbers do not grow with its
-        // own. That of its lowest node does, and they reach at most two below it and three above along each axis.
+        // The four nodes of a cell at an end lie otherwise about it than those of others, so their numbers do
+        // not grow with its own. That of its lowest node does, and they reach at most two below it and three
+        // above along each axis.
         let (lowest, shape) = (grid.window().first(), grid.window().shape());
         let (mut first_node, mut last_node, mut step, mut stride) = (0, 0, 0, 1);
         for axis in 0..D {
@@ -236,7 +239,8 @@ mod tests {
     use crate::grid::Window;
     use nalgebra::vector;
 
-    /// A linear field whose nodes beyond the surface have not moved: its slope at every particle is still its slope.
+    /// A linear field whose nodes beyond the surface have not moved: its slope at every particle is still its
+    /// slope.
     #[test]
     fn a_node_beyond_the_last_particle_has_no_part_in_the_slope() {
         let grid = Grid::new(vector![0.0], vector![5.0], [5]).unwrap();

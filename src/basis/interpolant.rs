@@ -6,17 +6,17 @@ use super::BasisFamily;
 use crate::grid::Grid;
 use crate::scalar::Scalar;
 
-/// The field of a basis that agrees with `N` given quantities at every [`BasisFamily::interpolation_point`]: nodal values
-/// for hats, for B-splines of degree `p` the interpolating spline at the Greville abscissae, whose error is of order `p + 1`
-/// (coefficients that are merely the values there would be of order 2).
+/// The field of a basis that agrees with `N` given quantities at every [`BasisFamily::interpolation_point`]:
+/// nodal values for hats, for B-splines of degree `p` the interpolating spline at the Greville abscissae,
+/// whose error is of order `p + 1` (coefficients that are merely the values there would be of order 2).
 #[derive(Clone, Debug)]
 pub struct Interpolant<T: Scalar, const N: usize> {
     coefficients: Vec<SVector<T, N>>,
 }
 
 impl<T: Scalar, const N: usize> Interpolant<T, N> {
-    /// Takes `values` at the points and solves for the coefficients, `O(n w^2)` for `n` DOFs and half band width `w`. They are
-    /// not finite if the functions of the basis cannot interpolate there.
+    /// Takes `values` at the points and solves for the coefficients, `O(n w^2)` for `n` DOFs and half band
+    /// width `w`. They are not finite if the functions of the basis cannot interpolate there.
     ///
     /// # Errors
     /// The first error of `values`.
@@ -53,8 +53,8 @@ impl<T: Scalar, const N: usize> Interpolant<T, N> {
     }
 }
 
-/// A banded system of equations, one for each interpolation point. Its matrix is totally positive, or a Kronecker product of
-/// such, so elimination needs no pivoting.
+/// A banded system of equations, one for each interpolation point. Its matrix is totally positive, or a
+/// Kronecker product of such, so elimination needs no pivoting.
 struct Collocation<T: Scalar, const N: usize> {
     half_band: usize,
     /// `2 half_band + 1` entries a row.

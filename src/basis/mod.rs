@@ -49,7 +49,8 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
     /// Whether [`BasisFamily::take_in`] does anything.
     const TAKES_IN_CELLS: bool = false;
 
-    /// Takes in which cells hold particles, before a step; for families whose functions depend on where the material ends.
+    /// Takes in which cells hold particles, before a step; for families whose functions depend on where the
+    /// material ends.
     fn take_in(&mut self, _grid: &Grid<T, D>, _bins: &Bins<D>) {
         const { assert!(!Self::TAKES_IN_CELLS, "TAKES_IN_CELLS wants an own `take_in`") };
     }
@@ -59,18 +60,19 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
         0
     }
 
-    /// Number of functions along each axis of a cell, if a cell's functions are the products of [`BasisFamily::factors`]: those
-    /// of DOFs that follow each other along every axis, from [`BasisFamily::first_dofs`] on, the same in all cells that have as
-    /// many cells on every side. Zero if they are not, or nobody has said
-    /// so; four points of a cell are then not computed at once.
+    /// Number of functions along each axis of a cell, if a cell's functions are the products of
+    /// [`BasisFamily::factors`]: those of DOFs that follow each other along every axis, from
+    /// [`BasisFamily::first_dofs`] on, the same in all cells that have as many cells on every side. Zero if
+    /// they are not, or nobody has said so; four points of a cell are then not computed at once.
     const WIDTH: usize = 0;
 
-    /// Whether the DOFs are those of the grid's [`Window`](crate::grid::Window), counted from its first one. A body in a grid that
-    /// is much larger then takes memory in proportion to itself. Without it the window is always the whole grid.
+    /// Whether the DOFs are those of the grid's [`Window`](crate::grid::Window), counted from its first one.
+    /// A body in a grid that is much larger then takes memory in proportion to itself. Without it the window
+    /// is always the whole grid.
     const FOLLOWS_WINDOW: bool = false;
 
-    /// Whether every gradient is one constant in a cell, as that of linear functions along one axis: stresses of particles then
-    /// change alike all over the cell.
+    /// Whether every gradient is one constant in a cell, as that of linear functions along one axis: stresses
+    /// of particles then change alike all over the cell.
     const CONSTANT_GRADIENT: bool = false;
 
     /// Whether DOFs besides those of [`BasisFamily::for_each_on_face`] have a value on a face, so that a wall
@@ -81,8 +83,8 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
     /// What [`BasisFamily::for_each_at_fixed_point`] visits.
     const AT_FIXED_POINTS: FixedPoints = FixedPoints::Alike;
 
-    /// The functions of `cell` at several of its points, whose coordinates from 0 to 1 in the cell are `unit`. Only asked where
-    /// [`BasisFamily::WIDTH`] is not zero.
+    /// The functions of `cell` at several of its points, whose coordinates from 0 to 1 in the cell are
+    /// `unit`. Only asked where [`BasisFamily::WIDTH`] is not zero.
     #[inline(always)]
     fn factors<K: Lanes<T>>(
         &self,
@@ -120,8 +122,8 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
     /// Calls `f(dof, phi, grad phi)` (`grad phi` in 1/m) for every DOF whose value *or* gradient may be
     /// non-zero at the point `x` of `cell`. A DOF may come twice; its parts then add up.
     ///
-    /// Every point of a cell must see the same DOFs in the same order: the step keeps the sums of a cell at hand while its
-    /// particles pass.
+    /// Every point of a cell must see the same DOFs in the same order: the step keeps the sums of a cell at
+    /// hand while its particles pass.
     fn for_each(
         &self,
         grid: &Grid<T, D>,
@@ -149,14 +151,15 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
         self.for_each(grid, cell, x, f);
     }
 
-    /// DOFs among which are all that points in the cells with numbers from that of `first` to that of `last` see. The fewer,
-    /// the better can threads share the particles; every DOF unless told otherwise.
+    /// DOFs among which are all that points in the cells with numbers from that of `first` to that of `last`
+    /// see. The fewer, the better can threads share the particles; every DOF unless told otherwise.
     fn dof_window(&self, grid: &Grid<T, D>, _first: &Cell<D>, _last: &Cell<D>) -> Range<usize> {
         0..self.dof_count(grid)
     }
 
-    /// Where (m) the value that belongs to a DOF is taken when a field is interpolated ([`Interpolant`]): the node, or the
-    /// Greville abscissa of a spline. Unless told otherwise the points are spread evenly along each axis.
+    /// Where (m) the value that belongs to a DOF is taken when a field is interpolated ([`Interpolant`]): the
+    /// node, or the Greville abscissa of a spline. Unless told otherwise the points are spread evenly along
+    /// each axis.
     fn interpolation_point(&self, grid: &Grid<T, D>, mut dof: usize) -> SVector<T, D> {
         let shape = self.dofs(grid);
         SVector::from_fn(|axis, _| {

@@ -12,8 +12,9 @@ use crate::simd::{Lanes, One, each};
 /// Most functions along an axis of a cell that can be computed for several points at once.
 pub const MOST_WIDTH: usize = 4;
 
-/// Values and slopes (by the coordinate in cell sizes) of a cell's functions along each axis, at several points of the cell:
-/// the factors of which the functions are products. Entries beyond the family's width mean nothing.
+/// Values and slopes (by the coordinate in cell sizes) of a cell's functions along each axis, at several
+/// points of the cell: the factors of which the functions are products. Entries beyond the family's width
+/// mean nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<V, const D: usize> {
     /// Values of each axis's functions.
@@ -40,16 +41,17 @@ pub struct Functions<V, const W: usize> {
     pub slope: [V; W],
 }
 
-/// A basis of one axis that has `n` cells of size one: `W` functions a cell, those of DOFs that follow each other.
+/// A basis of one axis that has `n` cells of size one: `W` functions a cell, those of DOFs that follow each
+/// other.
 ///
-/// Cells that have `W` or more cells on both sides have the same functions. One evaluation, generic in the packs of
-/// numbers that it computes with, serves single points and several points of a cell at once.
+/// Cells that have `W` or more cells on both sides have the same functions. One evaluation, generic in the
+/// packs of numbers that it computes with, serves single points and several points of a cell at once.
 pub trait AxisBasis<T: Scalar, const W: usize>: Send + Sync {
     /// Number of DOFs on an axis of `cells` cells.
     fn dofs_on_axis(&self, cells: usize) -> usize;
 
-    /// Values and slopes of the cell's functions at points whose coordinates are `unit`: 0 at the cell's lower edge,
-    /// 1 at its upper one. A function that a cell lacks is zero.
+    /// Values and slopes of the cell's functions at points whose coordinates are `unit`: 0 at the cell's
+    /// lower edge, 1 at its upper one. A function that a cell lacks is zero.
     fn evaluate<K: Lanes<T>>(&self, k: K, at: AxisCell, unit: K::V) -> Functions<K::V, W>;
 
     /// The first of the cell's DOFs; unless told otherwise that with the cell's own number.
@@ -78,8 +80,9 @@ pub trait AxisBasis<T: Scalar, const W: usize>: Send + Sync {
         first + low..first + high
     }
 
-    /// Where, in cell sizes from the axis's lower end, the value that belongs to `dof` is taken when a field is interpolated:
-    /// the node, or the Greville abscissa of a spline. Unless told otherwise the points are spread evenly.
+    /// Where, in cell sizes from the axis's lower end, the value that belongs to `dof` is taken when a field
+    /// is interpolated: the node, or the Greville abscissa of a spline. Unless told otherwise the points are
+    /// spread evenly.
     fn interpolation_point(&self, cells: usize, dof: usize) -> T {
         let intervals = self.dofs_on_axis(cells).saturating_sub(1).max(1);
         T::count(dof) * T::count(cells) / T::count(intervals)
@@ -129,8 +132,8 @@ pub(crate) fn factors_of<T: Scalar, const D: usize, const W: usize, K: Lanes<T>>
     };
     for axis in 0..D {
         let Functions { value, slope } = functions(axis);
-        // Copies of slices or iterators over the packs go through memory: measured at a fifth to three quarters of the speed of a
-        // whole step.
+        // Copies of slices or iterators over the packs go through memory: measured at a fifth to three
+        // quarters of the speed of a whole step.
         #[allow(clippy::manual_memcpy)]
         for k in 0..W.min(MOST_WIDTH) {
             factors.value[axis][k] = value[k];
@@ -177,8 +180,8 @@ pub fn dofs<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
     grid.window().shape().map(|cells| family.dofs_on_axis(cells))
 }
 
-/// DOFs that points in the cells with numbers from that of `first` to that of `last` see: the numbers of the DOFs of a cell
-/// grow with its own.
+/// DOFs that points in the cells with numbers from that of `first` to that of `last` see: the numbers of the
+/// DOFs of a cell grow with its own.
 pub fn dof_window<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     family: &B,
     grid: &Grid<T, D>,
@@ -233,7 +236,8 @@ pub fn for_each<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
 /// The functions of a cell of an axis at one point, after the first of their DOFs.
 pub(crate) type Row<T, const W: usize> = (usize, Functions<T, W>);
 
-/// Visits the products of `rows`, one an axis, on a lattice of `dofs(cells)` DOFs along an axis of so many cells.
+/// Visits the products of `rows`, one an axis, on a lattice of `dofs(cells)` DOFs along an axis of so many
+/// cells.
 #[inline(always)]
 pub(crate) fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
     grid: &Grid<T, D>,
@@ -262,8 +266,8 @@ pub(crate) fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
     }
 }
 
-/// Place of a DOF among those of the window along an axis. On a grid with fewer DOFs than a cell has functions those
-/// left over repeat the last one, with nothing.
+/// Place of a DOF among those of the window along an axis. On a grid with fewer DOFs than a cell has
+/// functions those left over repeat the last one, with nothing.
 #[inline(always)]
 fn along<const D: usize>((first, shape): &(Cell<D>, [usize; D]), axis: usize, dof: usize) -> usize {
     (dof - first[axis] as usize).min(shape[axis] - 1)
@@ -309,10 +313,11 @@ pub(crate) fn advance<const D: usize>(k: &mut [usize; D], width: usize) -> bool 
     false
 }
 
-/// Makes a one-axis family a [`BasisFamily`](crate::basis::BasisFamily) in every dimension, by its tensor product.
+/// Makes a one-axis family a [`BasisFamily`](crate::basis::BasisFamily) in every dimension, by its tensor
+/// product.
 ///
-/// `width` is the `W` of its [`AxisBasis`], `degree` that of the polynomials which its values reproduce; `at_fixed_points` names the family whose
-/// functions points that stand still see, if it is another one.
+/// `width` is the `W` of its [`AxisBasis`], `degree` that of the polynomials which its values reproduce;
+/// `at_fixed_points` names the family whose functions points that stand still see, if it is another one.
 #[macro_export]
 macro_rules! tensor_product_family {
     ($family:ty, width = $width:literal, degree = $degree:literal $(, at_fixed_points = $plain:expr)?) => {

@@ -61,9 +61,10 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
             return Err(GridError::TooManyCells);
         }
         let cell_size = SVector::from_fn(|a, _| (max[a] - min[a]) / T::count(cells[a]));
-        // Of a coordinate `(x - min) / h - i` the difference and the product round, and of `1 / h` the difference and both quotients,
-        // by half an epsilon each; of an edge `min + (max - min) i / n` the difference, the product and the quotient: eight halves of n
-        // epsilons in all. The sum rounds an edge by half an epsilon of where it is.
+        // Of a coordinate `(x - min) / h - i` the difference and the product round, and of `1 / h` the
+        // difference and both quotients, by half an epsilon each; of an edge `min + (max - min) i / n` the
+        // difference, the product and the quotient: eight halves of n epsilons in all. The sum rounds an edge
+        // by half an epsilon of where it is.
         let doubt = SVector::from_fn(|a, _| {
             let reach = (min[a].abs() + max[a].abs()) / cell_size[a];
             T::default_epsilon() * (T::lit(4.0) * T::count(cells[a]) + reach)
@@ -73,7 +74,8 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
             max,
             cells,
             cell_size,
-            // Not n over the extent, which rounds less: patches of cells have theirs from their size, and are compared with whole ones.
+            // Not n over the extent, which rounds less: patches of cells have theirs from their size, and are
+            // compared with whole ones.
             inverse_cell_size: cell_size.map(|h| T::one() / h),
             doubt,
             window: Window::whole(cells),
@@ -101,8 +103,8 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         &self.window
     }
 
-    /// Gives numbers to the cells of `window` only, as much of it as lies in the grid. What is kept for each cell, or each DOF,
-    /// then grows with the window and not with the grid. In one dimension all keep theirs.
+    /// Gives numbers to the cells of `window` only, as much of it as lies in the grid. What is kept for each
+    /// cell, or each DOF, then grows with the window and not with the grid. In one dimension all keep theirs.
     #[must_use]
     pub fn with_window(mut self, window: Window<D>) -> Self {
         if D > 1 {
@@ -176,8 +178,8 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         Some(cell)
     }
 
-    /// Whether `x` lies in `cell`, and so far from its edges that no rounding can matter: the common case, at a fraction of
-    /// the cost of [`Grid::locate`].
+    /// Whether `x` lies in `cell`, and so far from its edges that no rounding can matter: the common case, at
+    /// a fraction of the cost of [`Grid::locate`].
     #[inline(always)]
     pub fn strictly_contains(&self, cell: &Cell<D>, x: &SVector<T, D>) -> bool {
         (0..D).all(|axis| {
@@ -187,7 +189,8 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         })
     }
 
-    /// The same of four points of which lane by lane `x` are the coordinates along each axis: whether the cell clearly holds all.
+    /// The same of four points of which lane by lane `x` are the coordinates along each axis: whether the
+    /// cell clearly holds all.
     #[inline(always)]
     pub(crate) fn strictly_contains_all<K: Packs<T, N>, const N: usize>(
         &self,
@@ -212,8 +215,9 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         D == 1 || self.has_numbers(cell, SAFE)
     }
 
-    /// Moves `x` a few roundings off an inner edge of its `cell`. Just there functions vanish whose slopes do not: a DOF that
-    /// nothing else reaches would have no mass, hence no velocity, and yet strain the particle.
+    /// Moves `x` a few roundings off an inner edge of its `cell`. Just there functions vanish whose slopes do
+    /// not: a DOF that nothing else reaches would have no mass, hence no velocity, and yet strain the
+    /// particle.
     pub(crate) fn nudge_off_edges(&self, cell: &Cell<D>, x: &mut SVector<T, D>) {
         for axis in 0..D {
             let (i, gap) = (cell[axis] as usize, self.doubt[axis] * self.cell_size[axis]);
@@ -226,7 +230,8 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         }
     }
 
-    /// The point of `cell` nearest to `x`. A few roundings are kept from the upper edge, which belongs to the next cell.
+    /// The point of `cell` nearest to `x`. A few roundings are kept from the upper edge, which belongs to the
+    /// next cell.
     #[inline]
     pub fn nearest_within(&self, cell: &Cell<D>, x: &SVector<T, D>) -> SVector<T, D> {
         SVector::from_fn(|axis, _| {
@@ -318,7 +323,8 @@ mod tests {
         }
     }
 
-    /// Single precision with so many cells that a cell has a few hundred numbers: one of ten may be in doubt, not more.
+    /// Single precision with so many cells that a cell has a few hundred numbers: one of ten may be in doubt,
+    /// not more.
     #[test]
     fn little_is_in_doubt_with_many_cells_in_single_precision() {
         for (min, max, n) in [

@@ -2,8 +2,8 @@
 
 use super::Cell;
 
-/// A box of cells. In a grid that is much larger than what moves through it only the cells of such a box get numbers, and with
-/// them a place in memory; the box follows the particles.
+/// A box of cells. In a grid that is much larger than what moves through it only the cells of such a box get
+/// numbers, and with them a place in memory; the box follows the particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window<const D: usize> {
     first: Cell<D>,
@@ -45,7 +45,8 @@ impl<const D: usize> Window<D> {
         }
     }
 
-    /// The same with `margin(cells)` more cells on both sides of each axis, given how many it has along the axis.
+    /// The same with `margin(cells)` more cells on both sides of each axis, given how many it has along the
+    /// axis.
     #[must_use]
     pub fn widened(self, margin: impl Fn(usize) -> usize) -> Self {
         let margins = self.shape.map(margin);

@@ -11,9 +11,9 @@ use crate::record::Record;
 use crate::scalar::Scalar;
 use crate::simd::with_features;
 
-/// Any law whose states are numbers, behind one type: a stepper of it is compiled once for all laws. A step asks
-/// it once for some hundred particles, which cannot be measured; the states take the room that the chosen law
-/// needs, none for a law that remembers nothing.
+/// Any law whose states are numbers, behind one type: a stepper of it is compiled once for all laws. A step
+/// asks it once for some hundred particles, which cannot be measured; the states take the room that the
+/// chosen law needs, none for a law that remembers nothing.
 ///
 /// ```
 /// use materialpoint::law::{AnyLaw, LinearElastic, Moduli, VonMises};
@@ -321,7 +321,8 @@ macro_rules! any_law {
 
 any_law!(f64, f32);
 
-// Functions of their own, because a compiler knows of what a function is given that slices are apart from each other.
+// Functions of their own, because a compiler knows of what a function is given that slices are apart from
+// each other.
 
 #[inline(always)]
 fn carry_all<T, const D: usize, L>(

@@ -15,23 +15,24 @@ use crate::error::SetupError;
 use crate::scalar::Scalar;
 use crate::tensor::determinant;
 
-/// Drucker-Prager plasticity without hardening on [`Hencky`](super::Hencky)'s elasticity, in Kirchhoff's stress $\tau = J\sigma$ with
-/// deviator $s$ and mean $p$ (tension positive):
+/// Drucker-Prager plasticity without hardening on [`Hencky`](super::Hencky)'s elasticity, in Kirchhoff's
+/// stress $\tau = J\sigma$ with deviator $s$ and mean $p$ (tension positive):
 ///
 /// $$\Phi = \sqrt{\tfrac{1}{2}s:s} + \eta p - \xi c \le 0,\qquad
 /// d_p = \dot\gamma\left(\frac{s}{2\sqrt{\tfrac{1}{2}s:s}} + \frac{\bar\eta}{3}1\right).$$
 ///
-/// Friction $\eta$, cohesion $\xi c$ and dilation $\bar\eta$ follow from the Mohr-Coulomb constants by a [`ConeMatch`]. The return in
-/// principal logarithmic strains goes to the cone or to its apex $p = \xi c/\eta$ and is closed (de Souza Neto, Perić & Owen 2008,
-/// boxes 8.8 to 8.10 and 14.3).
+/// Friction $\eta$, cohesion $\xi c$ and dilation $\bar\eta$ follow from the Mohr-Coulomb constants by a
+/// [`ConeMatch`]. The return in principal logarithmic strains goes to the cone or to its apex $p = \xi
+/// c/\eta$ and is closed (de Souza Neto, Perić & Owen 2008, boxes 8.8 to 8.10 and 14.3).
 ///
-/// Material without cohesion **separates** at its apex: the volume it gains there is kept as [`DruckerPragerState::gap`], it bears nothing,
-/// and it bears again only when that volume is closed. Opening and closing do no work, and grains that part and meet again do not pile up
-/// volume (the purpose of the volume correction of Tampubolon et al. 2017). With cohesion the apex is held in tension and the
-/// volume gained is plastic for good.
+/// Material without cohesion **separates** at its apex: the volume it gains there is kept as
+/// [`DruckerPragerState::gap`], it bears nothing, and it bears again only when that volume is closed. Opening
+/// and closing do no work, and grains that part and meet again do not pile up volume (the purpose of the
+/// volume correction of Tampubolon et al. 2017). With cohesion the apex is held in tension and the volume
+/// gained is plastic for good.
 ///
-/// The stress is per current volume, the strength per volume of the unloaded undeformed material: a dissipation
-/// $\tau:d_p\ge 0$ for every dilation up to the friction.
+/// The stress is per current volume, the strength per volume of the unloaded undeformed material: a
+/// dissipation $\tau:d_p\ge 0$ for every dilation up to the friction.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DruckerPrager<T> {
@@ -46,7 +47,8 @@ pub struct DruckerPragerState<T, const D: usize> {
     pub stretch: ElasticStretch<T, D>,
     /// Volume over that of the unloaded material at the start, elastic and plastic.
     pub volume: T,
-    /// Accumulated plastic strain: integral of `sqrt(2/3 e : e)` with the deviator `e` of the plastic strain rate.
+    /// Accumulated plastic strain: integral of `sqrt(2/3 e : e)` with the deviator `e` of the plastic strain
+    /// rate.
     pub plastic_strain: T,
     /// Logarithmic volume strain by which separated material must close before it bears again; 0 in contact.
     pub gap: T,
@@ -67,8 +69,8 @@ impl<T: Scalar> DruckerPrager<T> {
     /// From the Mohr-Coulomb strength and the cone that stands for it.
     ///
     /// # Errors
-    /// If the cohesion is negative or infinite, the friction angle not within [0, pi/2), or the dilation angle not between 0 and
-    /// the friction angle.
+    /// If the cohesion is negative or infinite, the friction angle not within [0, pi/2), or the dilation
+    /// angle not between 0 and the friction angle.
     pub fn new(moduli: Moduli<T>, strength: &Strength<T>, matching: ConeMatch) -> Result<Self, SetupError> {
         let cone = Cone::new(strength, matching)?;
         Ok(Self { moduli, cone })
@@ -94,8 +96,9 @@ impl<T: Scalar> DruckerPrager<T> {
 
 /// Closes the gap of separated material before its strain counts.
 ///
-/// Separated material is at its apex, free of stress and strain: the trial strain is this step's alone. Of its shear only the
-/// part of the step in contact counts, or closing in one step would press the grains together by what they slid apart.
+/// Separated material is at its apex, free of stress and strain: the trial strain is this step's alone. Of
+/// its shear only the part of the step in contact counts, or closing in one step would press the grains
+/// together by what they slid apart.
 #[inline(always)]
 fn close<T: Scalar, const D: usize>(trial: &mut Principal<T, D>, gap: T) {
     let change = trial.strain.sum();
@@ -167,7 +170,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for DruckerPrager<T> {
         (!separated).then(|| hooke_strain_at(&self.moduli, change, modulus))
     }
 
-    /// That of elastic waves, which plastic ones never outrun; of separated material what it will be on contact, or more.
+    /// That of elastic waves, which plastic ones never outrun; of separated material what it will be on
+    /// contact, or more.
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         (wave_modulus(&self.moduli, stress, state.volume) / density).sqrt()
     }

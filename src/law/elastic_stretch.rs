@@ -9,9 +9,11 @@ use crate::tensor::{Spectral, is_plain, symmetric};
 /// Newton steps for the volume that belongs to a stress; it takes about one per factor of e in the volume.
 const NEWTON_STEPS: usize = 100;
 
-/// Elastic left Cauchy-Green tensor `b_e = F_e F_e^T` in three dimensions, whatever the grid's; the default is the identity.
+/// Elastic left Cauchy-Green tensor `b_e = F_e F_e^T` in three dimensions, whatever the grid's; the default
+/// is the identity.
 ///
-/// Below 3-D the axes off the plane are principal and, if there are two of them, alike: one number holds them.
+/// Below 3-D the axes off the plane are principal and, if there are two of them, alike: one number holds
+/// them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticStretch<T, const D: usize> {
     /// `b_e` in the grid's axes.
@@ -52,10 +54,11 @@ impl<T: Scalar, const D: usize> ElasticStretch<T, D> {
     }
 
     /// The stretch under the Cauchy stress `stress` (Pa), and `off_plane` along the other axes; see
-    /// [`ConstitutiveLaw::start`](super::ConstitutiveLaw::start). `None` where Hencky's law knows no such stress.
+    /// [`ConstitutiveLaw::start`](super::ConstitutiveLaw::start). `None` where Hencky's law knows no such
+    /// stress.
     ///
-    /// Kirchhoff's stress `J sigma` is linear in the logarithmic strain, which leaves one equation for the volume,
-    /// `ln J = J tr(sigma) / (3 K)`. It has a solution up to the mean stress `K / e`.
+    /// Kirchhoff's stress `J sigma` is linear in the logarithmic strain, which leaves one equation for the
+    /// volume, `ln J = J tr(sigma) / (3 K)`. It has a solution up to the mean stress `K / e`.
     pub(super) fn under_stress(
         moduli: &Moduli<T>,
         stress: &SMatrix<T, D, D>,
@@ -198,8 +201,9 @@ pub(super) fn stored_energy<T: Scalar>(moduli: &Moduli<T>, strain: &Vector3<T>) 
     moduli.lambda * trace * trace / T::lit(2.0) + moduli.mu * strain.dot(strain)
 }
 
-/// `rho c^2` (Pa) of the fastest wave, from `J d sigma/dJ = (lambda + 2 mu)/J - sigma` along the most compressed axis. The lowest
-/// principal stress is taken from Gershgorin: exact where it lies along an axis, a bound elsewhere.
+/// `rho c^2` (Pa) of the fastest wave, from `J d sigma/dJ = (lambda + 2 mu)/J - sigma` along the most
+/// compressed axis. The lowest principal stress is taken from Gershgorin: exact where it lies along an axis,
+/// a bound elsewhere.
 pub(super) fn wave_modulus<T: Scalar, const D: usize>(
     moduli: &Moduli<T>,
     stress: &SMatrix<T, D, D>,

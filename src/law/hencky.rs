@@ -8,14 +8,15 @@ use crate::scalar::Scalar;
 
 /// Hencky's solid: Hooke's law between Kirchhoff's stress and the logarithmic strain,
 ///
-/// $$\sigma = \frac{1}{J}\left(\lambda\operatorname{tr}(\ln V)1 + 2\mu\ln V\right),\quad V^2 = b = FF^T,\qquad
-/// W = \frac{\lambda}{2}\operatorname{tr}(\ln V)^2 + \mu\ln V:\ln V$$
+/// $$\sigma = \frac{1}{J}\left(\lambda\operatorname{tr}(\ln V)1 + 2\mu\ln V\right),\quad V^2 = b =
+/// FF^T,\qquad W = \frac{\lambda}{2}\operatorname{tr}(\ln V)^2 + \mu\ln V:\ln V$$
 ///
-/// (Hencky 1928; Anand 1979; de Souza Neto, Perić & Owen 2008, section 13.3), $W$ per reference volume. The mean stress has a maximum, $K/e$ at
-/// $J = e$: beyond, material that stretches gives way.
+/// (Hencky 1928; Anand 1979; de Souza Neto, Perić & Owen 2008, section 13.3), $W$ per reference volume. The
+/// mean stress has a maximum, $K/e$ at $J = e$: beyond, material that stretches gives way.
 ///
-/// In 1-D that is $\sigma = (E/J)\ln J$ with the modulus $E$ of uniaxial strain, where [`Logarithmic`](super::Logarithmic) has no $1/J$.
-/// Below 3-D the strains off the plane stay as they were at the start: none, or those of an initial stress.
+/// In 1-D that is $\sigma = (E/J)\ln J$ with the modulus $E$ of uniaxial strain, where
+/// [`Logarithmic`](super::Logarithmic) has no $1/J$. Below 3-D the strains off the plane stay as they were at
+/// the start: none, or those of an initial stress.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hencky<T> {

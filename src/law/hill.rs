@@ -12,8 +12,8 @@ use crate::tensor::symmetric;
 /// $$\dot\sigma = \mathbb{C}:d + W\sigma - \sigma W - \operatorname{tr}(d)\sigma,\qquad\text{in 1-D}\quad
 /// \dot\sigma = (E-\sigma)\dot\varepsilon$$
 ///
-/// (journal, equation 3), whose exact integral is $\sigma = E(1 - 1/J)$. Stress reaches $E$ only for infinite stretch; a
-/// stress of $E$ or more has no meaning in 1-D.
+/// (journal, equation 3), whose exact integral is $\sigma = E(1 - 1/J)$. Stress reaches $E$ only for infinite
+/// stretch; a stress of $E$ or more has no meaning in 1-D.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hill<T> {
@@ -68,8 +68,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hill<T> {
         unstrained_stress(&self.moduli, stress)
     }
 
-    /// Exact in 1-D: `E (J - 1 - ln J)` per reference volume with `J = 1/(1 - sigma/E)`. Beyond 1-D the rate has
-    /// no potential, and this is the leading term `sigma : C^-1 : sigma / 2`.
+    /// Exact in 1-D: `E (J - 1 - ln J)` per reference volume with `J = 1/(1 - sigma/E)`. Beyond 1-D the rate
+    /// has no potential, and this is the leading term `sigma : C^-1 : sigma / 2`.
     fn energy_density(&self, stress: &SMatrix<T, D, D>, _state: &()) -> T {
         if D > 1 {
             return complementary_energy(&self.moduli, stress);

@@ -6,8 +6,8 @@ use super::{ConstitutiveLaw, Moduli};
 use crate::scalar::Scalar;
 use crate::tensor::symmetric;
 
-/// Hooke's law at small strain: `sigma += lambda tr(d_eps) 1 + 2 mu d_eps`, in 1-D `sigma += E d_eps`. Density
-/// and volume stay as they are.
+/// Hooke's law at small strain: `sigma += lambda tr(d_eps) 1 + 2 mu d_eps`, in 1-D `sigma += E d_eps`.
+/// Density and volume stay as they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearElastic<T> {
     /// Elastic constants.

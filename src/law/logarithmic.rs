@@ -30,8 +30,8 @@ impl<T: Scalar> ConstitutiveLaw<T, 1> for Logarithmic<T> {
         stress[(0, 0)] += self.moduli.p_wave() * increment[(0, 0)].ln_1p();
     }
 
-    /// In uniaxial strain the area stays, so Cauchy's stress is the nominal one, and along the current configuration
-    /// `rho c^2 = J d sigma / d J = E`.
+    /// In uniaxial strain the area stays, so Cauchy's stress is the nominal one, and along the current
+    /// configuration `rho c^2 = J d sigma / d J = E`.
     #[inline(always)]
     fn wave_speed(&self, density: T, _stress: &SMatrix<T, 1, 1>, _state: &()) -> T {
         (self.moduli.p_wave() / density).sqrt()

@@ -36,25 +36,25 @@ use crate::scalar::Scalar;
 
 /// How stress follows the deformation.
 ///
-/// Implement it for a law of your own (see `examples/own_law.rs`); [`crate::testing::check_law`] checks that the
-/// parts agree with each other.
+/// Implement it for a law of your own (see `examples/own_law.rs`); [`crate::testing::check_law`] checks that
+/// the parts agree with each other.
 ///
 /// # What an increment holds
-/// `increment` is $\Delta t\,\nabla v$, all of it: its symmetric part strains the material, its antisymmetric part turns it. The
-/// deformation gradient after the step is $F_{n+1} = (1 + \text{increment}) F_n$. Below three dimensions
-/// nothing moves along the axes that the grid does not have (plane strain, uniaxial strain).
+/// `increment` is $\Delta t\,\nabla v$, all of it: its symmetric part strains the material, its antisymmetric
+/// part turns it. The deformation gradient after the step is $F_{n+1} = (1 + \text{increment}) F_n$. Below
+/// three dimensions nothing moves along the axes that the grid does not have (plane strain, uniaxial strain).
 ///
 /// The step turns no stress and no state: **objectivity is the law's own care**. A law of small strain takes
 /// the symmetric part and leaves rotations alone; a rate at large strain adds what turns the stress,
-/// $W\sigma - \sigma W$ with the antisymmetric part $W$ ([`Hill`]); a law that keeps $F$ or $b = F F^T$ carries that
-/// by $1 + \text{increment}$ and needs no more ([`NeoHookean`], [`ElasticStretch`]).
+/// $W\sigma - \sigma W$ with the antisymmetric part $W$ ([`Hill`]); a law that keeps $F$ or $b = F F^T$
+/// carries that by $1 + \text{increment}$ and needs no more ([`NeoHookean`], [`ElasticStretch`]).
 ///
 /// # When it is asked
 /// Once a step and particle, after the particle has moved and before its volume follows:
 /// [`ConstitutiveLaw::update_over`], then [`ConstitutiveLaw::knows`]. Stress and state come as the last step
 /// left them, or as a reconstruction that relaxes has moved them by [`ConstitutiveLaw::strain_for`] and an
-/// `update` over it. [`crate::stepper::Stepper::critical_step`] and the checks call
-/// `update` on copies, so it must change nothing but its arguments. `Default` of the state knows no constants of the law: keep what
+/// `update` over it. [`crate::stepper::Stepper::critical_step`] and the checks call `update` on copies, so it
+/// must change nothing but its arguments. `Default` of the state knows no constants of the law: keep what
 /// scales with them as a ratio to them.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no constitutive law for scalar `{T}` in `{D}` dimensions"
@@ -78,15 +78,17 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Send + Sync {
     /// Whether volume and density follow the deformation (large strain) or stay as they were (small strain).
     fn large_strain(&self) -> bool;
 
-    /// Carries stress (Cauchy, Pa, tension positive) and state over the displacement gradient
-    /// `increment` of one step, strain and rotation: row = component, column = derivative, taken at the step's start.
+    /// Carries stress (Cauchy, Pa, tension positive) and state over the displacement gradient `increment` of
+    /// one step, strain and rotation: row = component, column = derivative, taken at the step's start.
     fn update(&self, increment: &SMatrix<T, D, D>, stress: &mut SMatrix<T, D, D>, state: &mut Self::State);
 
-    /// The same over a step that takes `dt` (s), for laws that feel the rate of strain; this is what a step calls.
+    /// The same over a step that takes `dt` (s), for laws that feel the rate of strain; this is what a step
+    /// calls.
     ///
-    /// A law that knows no time writes [`ConstitutiveLaw::update`] alone, and the default forwards to it at no cost. `update`
-    /// stays free of `dt` because the increment is all that most laws need, and because checks and the critical step ask for
-    /// the response to a strain, not to a rate. A law that does feel the rate gives in `update` its response without it.
+    /// A law that knows no time writes [`ConstitutiveLaw::update`] alone, and the default forwards to it at
+    /// no cost. `update` stays free of `dt` because the increment is all that most laws need, and because
+    /// checks and the critical step ask for the response to a strain, not to a rate. A law that does feel the
+    /// rate gives in `update` its response without it.
     #[inline(always)]
     fn update_over(
         &self,
@@ -100,12 +102,14 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Send + Sync {
 
     /// The state of material that is under `stress` (Cauchy, Pa) before it moves; `None` if the law has none.
     ///
-    /// `off_plane` is the stress (Pa) along every axis that the grid does not have, such as `K_0 sigma_yy` in plane strain. `None`
-    /// stands for what elastic material would feel that has been strained in the grid's axes alone: `nu (sigma_xx + sigma_yy)`.
-    /// A law that remembers no strain off the plane answers `None` to any other.
+    /// `off_plane` is the stress (Pa) along every axis that the grid does not have, such as `K_0 sigma_yy` in
+    /// plane strain. `None` stands for what elastic material would feel that has been strained in the grid's
+    /// axes alone: `nu (sigma_xx + sigma_yy)`. A law that remembers no strain off the plane answers `None` to
+    /// any other.
     ///
-    /// By default stress is carried by a law without state, and any other law starts from rest only. Laws whose stress
-    /// follows from their state must override it to be given an initial stress: the next update would forget it.
+    /// By default stress is carried by a law without state, and any other law starts from rest only. Laws
+    /// whose stress follows from their state must override it to be given an initial stress: the next update
+    /// would forget it.
     #[inline]
     fn start(&self, stress: &SMatrix<T, D, D>, _off_plane: Option<T>) -> Option<Self::State> {
         let free = stress.iter().all(|s| s.is_zero());
@@ -118,13 +122,14 @@ pub trait ConstitutiveLaw<T: Scalar, const D: usize>: Send + Sync {
         None
     }
 
-    /// Strain that changes the stress by about `change` (Pa), for a reconstruction that moves stresses a little towards what it
-    /// sees of them: a stress that follows from a state is moved with it, by an [`ConstitutiveLaw::update`] over this strain. `None`
-    /// if it must be left alone, as of material that is separated.
+    /// Strain that changes the stress by about `change` (Pa), for a reconstruction that moves stresses a
+    /// little towards what it sees of them: a stress that follows from a state is moved with it, by an
+    /// [`ConstitutiveLaw::update`] over this strain. `None` if it must be left alone, as of material that is
+    /// separated.
     ///
-    /// Unless told otherwise that of Hooke's law with the [`ConstitutiveLaw::elastic_constants`], scaled to the modulus of the fastest
-    /// wave now; without constants the change over that modulus, which moves the stress of any stable material in the right
-    /// direction, though not all of it as fast.
+    /// Unless told otherwise that of Hooke's law with the [`ConstitutiveLaw::elastic_constants`], scaled to
+    /// the modulus of the fastest wave now; without constants the change over that modulus, which moves the
+    /// stress of any stable material in the right direction, though not all of it as fast.
     #[inline]
     fn strain_for(
         &self,

@@ -53,7 +53,8 @@ impl<T: Scalar> NeoHookean<T> {
         stress.map(|s| T::one() + (s * x.exp() - lambda * x) / mu)
     }
 
-    /// Squared principal stretches under principal stresses: one equation for `x = ln J`, `sum ln b(x) = 2 x`.
+    /// Squared principal stretches under principal stresses: one equation for `x = ln J`,
+    /// `sum ln b(x) = 2 x`.
     fn stretches_under<const D: usize>(&self, stress: &SVector<T, D>) -> Option<SVector<T, D>> {
         let (lambda, two) = (self.moduli.lambda, T::lit(2.0));
         let lawful = |b: &SVector<T, D>| b.iter().all(|b| *b > T::zero());
@@ -122,8 +123,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NeoHookean<T> {
         Some(self.moduli)
     }
 
-    /// From `J d sigma/dJ` along the most stretched axis. Its squared stretch is the largest row sum of `F F^T` (Gershgorin):
-    /// exact where the stretches lie along the axes, an upper bound elsewhere.
+    /// From `J d sigma/dJ` along the most stretched axis. Its squared stretch is the largest row sum of
+    /// `F F^T` (Gershgorin): exact where the stretches lie along the axes, an upper bound elsewhere.
     #[inline(always)]
     fn wave_speed(&self, density: T, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         let Moduli { lambda, mu } = self.moduli;

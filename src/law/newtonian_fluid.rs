@@ -20,14 +20,17 @@ impl<T: Scalar> Default for VolumeRatio<T> {
 
 /// Weakly compressible Newtonian fluid after Cole (1948) and Monaghan (1994),
 ///
-/// $$\sigma = -p1 + 2\mu\operatorname{dev}d,\qquad p = \frac{K}{\gamma}\left(J^{-\gamma} - 1\right),\quad J = \rho_0/\rho,$$
+/// $$\sigma = -p1 + 2\mu\operatorname{dev}d,\qquad p = \frac{K}{\gamma}\left(J^{-\gamma} - 1\right),\quad J =
+/// \rho_0/\rho,$$
 ///
-/// with the deviator of three dimensions (no bulk viscosity). The speed of sound at rest is $\sqrt{K/\rho_0}$; ten times the
-/// flow's speed keeps changes of density near 1 %. A free fluid bears no tension: beyond $J = 1$ its pressure stays zero, and since the
-/// volume itself is remembered, drops that part and meet again do not pile up volume.
+/// with the deviator of three dimensions (no bulk viscosity). The speed of sound at rest is
+/// $\sqrt{K/\rho_0}$; ten times the flow's speed keeps changes of density near 1 %. A free fluid bears no
+/// tension: beyond $J = 1$ its pressure stays zero, and since the volume itself is remembered, drops that
+/// part and meet again do not pile up volume.
 ///
-/// Viscosity is felt in [`update_over`](ConstitutiveLaw::update_over), which knows the time; `update` alone gives the pressure. It also
-/// shortens the stable step: [`NewtonianFluid::stable_step`]. The separated fluid keeps its viscosity.
+/// Viscosity is felt in [`update_over`](ConstitutiveLaw::update_over), which knows the time; `update` alone
+/// gives the pressure. It also shortens the stable step: [`NewtonianFluid::stable_step`]. The separated fluid
+/// keeps its viscosity.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonianFluid<T> {
@@ -38,8 +41,8 @@ pub struct NewtonianFluid<T> {
 }
 
 impl<T: Scalar> NewtonianFluid<T> {
-    /// From the bulk modulus at rest (Pa), the exponent `gamma` (7 for water, 1 for a pressure linear in the density) and the dynamic
-    /// viscosity (Pa s). Bears no tension.
+    /// From the bulk modulus at rest (Pa), the exponent `gamma` (7 for water, 1 for a pressure linear in the
+    /// density) and the dynamic viscosity (Pa s). Bears no tension.
     ///
     /// # Errors
     /// If the modulus is not positive, the exponent below 1, the viscosity negative, or one of them infinite.
@@ -98,11 +101,12 @@ impl<T: Scalar> NewtonianFluid<T> {
 
     /// Stable step (s) of the viscous fluid, given that of sound alone, `elastic`.
     ///
-    /// The step's viscous stress acts in the next step. A mode of frequency `w` and damping `z w`, `z = mu' k^2 / (2 rho w)`, is then
-    /// stable while `(w dt / 2)^2 + z w dt <= 1` (Belytschko, Liu & Moran 2000, section 6.2). With `elastic = 2 / w` and, for the
-    /// fastest mode of a grid of cells of width `cell` (m), `k^2 = 4 D / cell^2` and `mu' = 4 mu / 3`, that is
-    /// `(dt / elastic)^2 + dt / viscous = 1` with `viscous = rho cell^2 / (2 D mu')`. It is no part of `wave_speed`, which knows no
-    /// cell; bases with broader spectra than linear ones on lumped mass need less.
+    /// The step's viscous stress acts in the next step. A mode of frequency `w` and damping `z w`,
+    /// `z = mu' k^2 / (2 rho w)`, is then stable while `(w dt / 2)^2 + z w dt <= 1` (Belytschko, Liu & Moran
+    /// 2000, section 6.2). With `elastic = 2 / w` and, for the fastest mode of a grid of cells of width
+    /// `cell` (m), `k^2 = 4 D / cell^2` and `mu' = 4 mu / 3`, that is `(dt / elastic)^2 + dt / viscous = 1`
+    /// with `viscous = rho cell^2 / (2 D mu')`. It is no part of `wave_speed`, which knows no cell; bases
+    /// with broader spectra than linear ones on lumped mass need less.
     pub fn stable_step<const D: usize>(&self, elastic: T, density: T, cell: T) -> T {
         let viscosity = T::lit(4.0) / T::lit(3.0) * self.viscosity;
         let ratio = elastic * T::count(D) * viscosity / (density * cell * cell);
@@ -137,7 +141,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NewtonianFluid<T> {
         *stress += self.viscous_stress(dt, increment);
     }
 
-    /// Of a fluid at rest: `None` for a stress that is not isotropic up to round-off, or under tension that it does not bear.
+    /// Of a fluid at rest: `None` for a stress that is not isotropic up to round-off, or under tension that
+    /// it does not bear.
     fn start(&self, stress: &SMatrix<T, D, D>, off_plane: Option<T>) -> Option<Self::State> {
         let pressure = -stress.trace() / T::count(D);
         let shear = (stress + SMatrix::identity() * pressure).norm();
@@ -167,7 +172,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NewtonianFluid<T> {
         ))
     }
 
-    /// `rho c^2 = K J^-gamma`; of separated fluid what it will be on contact, when its density is `rho J` again.
+    /// `rho c^2 = K J^-gamma`; of separated fluid what it will be on contact, when its density is `rho J`
+    /// again.
     fn wave_speed(&self, density: T, _stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         if self.is_separated(state) {
             return (self.bulk_modulus / (density * state.0)).sqrt();

@@ -7,13 +7,15 @@ use super::{ConstitutiveLaw, DeformationGradient, Moduli};
 use crate::scalar::Scalar;
 use crate::tensor::determinant;
 
-/// St. Venant-Kirchhoff solid: Hooke's law between the second Piola-Kirchhoff stress $S$ and Green's strain $E$,
+/// St. Venant-Kirchhoff solid: Hooke's law between the second Piola-Kirchhoff stress $S$ and Green's strain
+/// $E$,
 ///
-/// $$\sigma = \frac{1}{J}FSF^T,\quad S = \lambda\operatorname{tr}(E)1 + 2\mu E,\quad E = \tfrac{1}{2}(F^TF - 1),\qquad
-/// W = \frac{\lambda}{2}\operatorname{tr}(E)^2 + \mu E:E$$
+/// $$\sigma = \frac{1}{J}FSF^T,\quad S = \lambda\operatorname{tr}(E)1 + 2\mu E,\quad E = \tfrac{1}{2}(F^TF -
+/// 1),\qquad W = \frac{\lambda}{2}\operatorname{tr}(E)^2 + \mu E:E$$
 ///
-/// (Holzapfel 2000, section 6.5), $W$ per reference volume. For large rotations and moderate strains: in uniaxial compression it
-/// softens and bears no more below the stretch $1/\sqrt{3}$. Below 3-D the stretches off the plane are 1.
+/// (Holzapfel 2000, section 6.5), $W$ per reference volume. For large rotations and moderate strains: in
+/// uniaxial compression it softens and bears no more below the stretch $1/\sqrt{3}$. Below 3-D the stretches
+/// off the plane are 1.
 ///
 /// It starts from rest only: an initial stress has no closed-form state, and under compression up to two.
 #[doc = include_str!("../../docs/formulas.html")]
@@ -62,8 +64,8 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for StVenantKirchhoff<T> {
         Some(self.moduli)
     }
 
-    /// From `J d sigma/dJ = (lambda + 2 mu) l^4 / J + sigma` for the stretch `l` along an axis. Where the stretches lie
-    /// off the axes, the largest row sums of `F F^T` and of the stress are taken: a bound.
+    /// From `J d sigma/dJ = (lambda + 2 mu) l^4 / J + sigma` for the stretch `l` along an axis. Where the
+    /// stretches lie off the axes, the largest row sums of `F F^T` and of the stress are taken: a bound.
     fn wave_speed(&self, density: T, stress: &SMatrix<T, D, D>, state: &Self::State) -> T {
         let j = determinant(&state.0);
         let b = state.0 * state.0.transpose();

@@ -29,10 +29,10 @@ pub struct Bodies<'a, T, const D: usize, N> {
 /// A law as a [`Stepper`](crate::stepper::Stepper) meets it: every [`ConstitutiveLaw`] is one, and so is
 /// [`AnyLaw`](super::AnyLaw). There is nothing to implement.
 ///
-/// The states of all particles lie in one array of [`LawSweep::Number`]s, [`LawSweep::numbers`] of them for each
-/// particle, one after the other: a law that is a type has one number a particle, its `State`, and a law that
-/// is chosen at run time as many scalars as it remembers. What is asked in every step is asked for a run of
-/// particles at once, so that a choice at run time costs one call for all of them.
+/// The states of all particles lie in one array of [`LawSweep::Number`]s, [`LawSweep::numbers`] of them for
+/// each particle, one after the other: a law that is a type has one number a particle, its `State`, and a law
+/// that is chosen at run time as many scalars as it remembers. What is asked in every step is asked for a run
+/// of particles at once, so that a choice at run time costs one call for all of them.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no constitutive law for scalar `{T}` in `{D}` dimensions"
 )]

@@ -8,13 +8,14 @@ use super::{ConstitutiveLaw, Moduli};
 use crate::error::SetupError;
 use crate::scalar::Scalar;
 
-/// Von Mises plasticity with linear isotropic hardening on [`Hencky`](super::Hencky)'s elasticity, in Kirchhoff's stress
-/// $\tau = J\sigma$ with deviator $s$:
+/// Von Mises plasticity with linear isotropic hardening on [`Hencky`](super::Hencky)'s elasticity, in
+/// Kirchhoff's stress $\tau = J\sigma$ with deviator $s$:
 ///
 /// $$\sqrt{\tfrac{3}{2}s:s} \le \sigma_Y + H\alpha,\qquad \dot\alpha = \sqrt{\tfrac{2}{3}d_p:d_p}.$$
 ///
-/// The flow is associated and keeps the volume. The radial return in logarithmic strain is closed (de Souza Neto, Perić & Owen 2008,
-/// boxes 7.3, 7.4 and 14.3): the trial strain keeps its axes, $\Delta\alpha = (q - \sigma_Y - H\alpha)/(3\mu + H)$.
+/// The flow is associated and keeps the volume. The radial return in logarithmic strain is closed (de Souza
+/// Neto, Perić & Owen 2008, boxes 7.3, 7.4 and 14.3): the trial strain keeps its axes, $\Delta\alpha = (q -
+/// \sigma_Y - H\alpha)/(3\mu + H)$.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VonMises<T> {
@@ -61,7 +62,8 @@ impl<T: Scalar> VonMises<T> {
         self.moduli
     }
 
-    /// Yield function (Pa) `q - sigma_Y - H alpha` in Kirchhoff's stress; not above zero after an update, up to round-off.
+    /// Yield function (Pa) `q - sigma_Y - H alpha` in Kirchhoff's stress; not above zero after an update, up
+    /// to round-off.
     pub fn yield_function<const D: usize>(&self, state: &VonMisesState<T, D>) -> T {
         let deviator = deviator(&state.stretch.principal().strain);
         self.mises(&deviator) - self.strength(state.plastic_strain)

@@ -8,8 +8,8 @@ use crate::grid::Grid;
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
 
-/// The Kronecker product of one mass matrix for each axis: that of a tensor-product basis where evenly spread material fills
-/// the grid. Solved axis by axis, at a few operations for each DOF.
+/// The Kronecker product of one mass matrix for each axis: that of a tensor-product basis where evenly spread
+/// material fills the grid. Solved axis by axis, at a few operations for each DOF.
 #[derive(Clone, Debug)]
 pub struct AxisMasses<T, const D: usize> {
     factors: [Banded<T>; D],
@@ -68,8 +68,8 @@ impl<T: Scalar, const D: usize> AxisMasses<T, D> {
     }
 }
 
-/// Mass matrix of the functions along one axis: sums of those that have the same place along it, which a partition of unity
-/// makes functions of that axis alone.
+/// Mass matrix of the functions along one axis: sums of those that have the same place along it, which a
+/// partition of unity makes functions of that axis alone.
 fn axis_mass<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,

@@ -98,8 +98,8 @@ impl<T: Scalar> Banded<T> {
         })
     }
 
-    /// Prescribes component `axis` of unknown `c`: moves its known part to the right-hand side and replaces its
-    /// equation by `x_c = value`.
+    /// Prescribes component `axis` of unknown `c`: moves its known part to the right-hand side and replaces
+    /// its equation by `x_c = value`.
     pub fn prescribe<const D: usize>(
         &mut self,
         c: usize,
@@ -119,8 +119,8 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
-    /// Lumps the rows of a matrix of masses whose diagonal holds less than the share `least` of their sum: what lies beside
-    /// the diagonal goes to it, in the rows of both DOFs, so that all sums of rows stay.
+    /// Lumps the rows of a matrix of masses whose diagonal holds less than the share `least` of their sum:
+    /// what lies beside the diagonal goes to it, in the rows of both DOFs, so that all sums of rows stay.
     pub fn lump_weak(&mut self, least: T) {
         for i in 0..self.order {
             let band = i.saturating_sub(self.half_band)..(i + self.half_band + 1).min(self.order);
@@ -162,8 +162,9 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
-    /// Factorises in place; the diagonal then holds the inverse pivots. A pivot that vanishes against the matrix's largest
-    /// diagonal entry marks a DOF that no mass reaches: it is cut off, and [`Banded::solve`] returns zero for it.
+    /// Factorises in place; the diagonal then holds the inverse pivots. A pivot that vanishes against the
+    /// matrix's largest diagonal entry marks a DOF that no mass reaches: it is cut off, and [`Banded::solve`]
+    /// returns zero for it.
     pub fn factorise(&mut self) {
         let negligible = self.negligible();
         match self.half_band {
@@ -174,9 +175,10 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
-    /// Factorises in place, from both ends at once where there are one to three bands beside the diagonal, and solves for component `axis`: two
-    /// chains of inverse pivots that do not wait for each other, and that two threads share. See [`Banded::factorise`]; the factors are those
-    /// that [`Banded::solve_again`] wants, and no other.
+    /// Factorises in place, from both ends at once where there are one to three bands beside the diagonal,
+    /// and solves for component `axis`: two chains of inverse pivots that do not wait for each other, and
+    /// that two threads share. See [`Banded::factorise`]; the factors are those that [`Banded::solve_again`]
+    /// wants, and no other.
     pub fn factorise_and_solve<const D: usize>(&mut self, x: &mut [SVector<T, D>], axis: usize) {
         let (negligible, parallel) = (self.negligible(), many_threads());
         let rows = &mut self.rows;
@@ -269,8 +271,8 @@ impl<T: Scalar> Banded<T> {
         }
     }
 
-    /// Solves with the factorised matrix for all right-hand sides in `x`. What belongs to an unknown is a row of `stride` numbers, and
-    /// so many rows as there are unknowns lie end to end again and again.
+    /// Solves with the factorised matrix for all right-hand sides in `x`. What belongs to an unknown is a row
+    /// of `stride` numbers, and so many rows as there are unknowns lie end to end again and again.
     pub(crate) fn solve_lines(&self, x: &mut [T], stride: usize) {
         with_features(
             #[inline(always)]

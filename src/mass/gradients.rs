@@ -11,18 +11,22 @@ use crate::simd::with_features;
 /// Iterations after which the solution is taken as it is. Ten to thirty are usual.
 const MOST_ITERATIONS: usize = 200;
 
-/// Conjugate gradients for [`Lattice`] matrices of masses, one component of the right-hand side after the other.
+/// Conjugate gradients for [`Lattice`] matrices of masses, one component of the right-hand side after the
+/// other.
 ///
-/// The preconditioner is $S K S$: $K$ the Kronecker product of the axes' mass matrices ([`AxisMasses`]), $S$ diagonal and such
-/// that the product has the diagonal of the matrix. Where material fills the grid evenly it is nearly the inverse; elsewhere $S$
-/// takes in how much of it a DOF sees (Loli, Sangalli & Tani 2022, "Easy and efficient preconditioning of the isogeometric
-/// mass matrix"). Where a [`Penalty`] ties DOFs, what is smooth and what is not weigh the other way round, and the diagonal alone
-/// takes half the iterations. The start is the lumped solution, exact for rigid translations, and at the end each component that
-/// nothing holds is shifted so that the sum of the residual vanishes: momentum is kept to round-off whatever the tolerance.
+/// The preconditioner is $S K S$: $K$ the Kronecker product of the axes' mass matrices ([`AxisMasses`]), $S$
+/// diagonal and such that the product has the diagonal of the matrix. Where material fills the grid evenly it
+/// is nearly the inverse; elsewhere $S$ takes in how much of it a DOF sees (Loli, Sangalli & Tani 2022, "Easy
+/// and efficient preconditioning of the isogeometric mass matrix"). Where a [`Penalty`] ties DOFs, what is
+/// smooth and what is not weigh the other way round, and the diagonal alone takes half the iterations. The
+/// start is the lumped solution, exact for rigid translations, and at the end each component that nothing
+/// holds is shifted so that the sum of the residual vanishes: momentum is kept to round-off whatever the
+/// tolerance.
 #[derive(Clone, Debug)]
 pub struct ConjugateGradients<T, const D: usize> {
     axes: AxisMasses<T, D>,
-    /// Inverse of `S`; zero for DOFs that are tied, and for those that have no neighbours, which the start solves for.
+    /// Inverse of `S`; zero for DOFs that are tied, and for those that have no neighbours, which the start
+    /// solves for.
     scale: Vec<T>,
     sums: Vec<T>,
     /// Of matrix and penalty.
@@ -154,8 +158,8 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
             matrix.multiply(&self.direction[axis], &mut self.work);
             penalty.add_product(&self.direction[axis], &mut self.work);
             let curvature = dot(&self.direction[axis], &self.work);
-            // A fitted density may be negative somewhere, and what few particles see need not determine all functions; what is
-            // found so far is then the best there is.
+            // A fitted density may be negative somewhere, and what few particles see need not determine all
+            // functions; what is found so far is then the best there is.
             if curvature <= self.negligible_curvature(axis) {
                 break;
             }
@@ -185,8 +189,8 @@ impl<T: Scalar, const D: usize> ConjugateGradients<T, D> {
 
     /// First guess and its residual; returns the square below which the preconditioned residual is to fall.
     ///
-    /// The guess is the lumped solution, and of tied DOFs, whose own mass may be next to nothing, the translation of the whole and
-    /// what it leaves over the diagonal.
+    /// The guess is the lumped solution, and of tied DOFs, whose own mass may be next to nothing, the
+    /// translation of the whole and what it leaves over the diagonal.
     #[inline(always)]
     fn start(
         &mut self,

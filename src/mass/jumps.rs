@@ -6,9 +6,9 @@ use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
 use crate::scalar::Scalar;
 
-/// What the functions along one axis do at the lines between its cells: a function that is a polynomial of the basis's degree
-/// $p$ in two neighbouring cells is the same one in both if $h^p\partial^p$ does not jump between them, for a basis as smooth as
-/// splines are.
+/// What the functions along one axis do at the lines between its cells: a function that is a polynomial of
+/// the basis's degree $p$ in two neighbouring cells is the same one in both if $h^p\partial^p$ does not jump
+/// between them, for a basis as smooth as splines are.
 #[derive(Clone, Debug)]
 pub(super) struct AxisJumps<T> {
     /// First function of each cell and how many it has, counted within the window.
@@ -100,8 +100,9 @@ struct Derivative<T> {
     values: Vec<T>,
 }
 
-/// By differences of the values at `p + 1` points, exact for polynomials: a family need not tell its derivatives. Functions that
-/// have the same place along the axis are added up, which a partition of unity makes functions of that axis alone.
+/// By differences of the values at `p + 1` points, exact for polynomials: a family need not tell its
+/// derivatives. Functions that have the same place along the axis are added up, which a partition of unity
+/// makes functions of that axis alone.
 fn highest_derivative<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
@@ -157,7 +158,8 @@ mod tests {
             assert_relative_eq!(found, expected, epsilon = 1e-10);
         }
         assert_eq!((jumps.above(4).len(), jumps.first(4)), (expected.len(), 4));
-        // Also where splines end at a wall, lines bend nowhere: coefficients of x are the interpolation points.
+        // Also where splines end at a wall, lines bend nowhere: coefficients of x are the interpolation
+        // points.
         let jumps = AxisJumps::new(basis, &grid, 1);
         let stride = basis.dofs(&grid)[0];
         for line in 0..jumps.lines() {

@@ -8,13 +8,15 @@ use crate::simd::with_features;
 const BLOCK: usize = 128;
 /// Rows in a span that threads share.
 const SPAN: usize = 32 * BLOCK;
-/// Fewest entries of which another thread is given rows: so many take a thread a tenth of a millisecond and more. Of
-/// fewer, sharing brought nothing, and other threads had to be woken for each of the many products of a solution.
+/// Fewest entries of which another thread is given rows: so many take a thread a tenth of a millisecond and
+/// more. Of fewer, sharing brought nothing, and other threads had to be woken for each of the many products
+/// of a solution.
 const MANY: usize = 1 << 20;
 
-/// A symmetric matrix of order `n` whose entry `(i, j)` may differ from zero only if the DOFs `i` and `j` of a lattice are
-/// neighbours within a given reach along every axis. The lower half is stored diagonal by diagonal: of 25 diagonals in the
-/// plane (reach 2) 13, whatever the lattice's size, where a band would hold rows of the lattice between them.
+/// A symmetric matrix of order `n` whose entry `(i, j)` may differ from zero only if the DOFs `i` and `j` of
+/// a lattice are neighbours within a given reach along every axis. The lower half is stored diagonal by
+/// diagonal: of 25 diagonals in the plane (reach 2) 13, whatever the lattice's size, where a band would hold
+/// rows of the lattice between them.
 #[derive(Clone, Debug)]
 pub struct Lattice<T> {
     order: usize,
@@ -73,8 +75,8 @@ impl<T: Scalar> Lattice<T> {
         self.entries.fill(T::zero());
     }
 
-    /// Adds to the entry `(i, j)`, `j <= i`, and so to `(j, i)`. What DOFs that are no neighbours have in common is zero and
-    /// left out.
+    /// Adds to the entry `(i, j)`, `j <= i`, and so to `(j, i)`. What DOFs that are no neighbours have in
+    /// common is zero and left out.
     #[inline(always)]
     pub fn add(&mut self, i: usize, j: usize, value: T) {
         if let Some(&place) = self.places.get(i - j)
@@ -139,8 +141,8 @@ impl<T: Scalar> Lattice<T> {
         }
     }
 
-    /// Lumps the row of a DOF in a matrix of masses: what lies beside the diagonal goes to it, in the rows of both DOFs, so that
-    /// all sums of rows stay.
+    /// Lumps the row of a DOF in a matrix of masses: what lies beside the diagonal goes to it, in the rows of
+    /// both DOFs, so that all sums of rows stay.
     pub fn lump(&mut self, i: usize) {
         for k in 1..self.offsets.len() {
             let offset = self.offsets[k];
@@ -168,7 +170,8 @@ fn add_products<T: Scalar>(y: &mut [T], a: &[T], x: &[T]) {
     }
 }
 
-/// Differences of the numbers of DOFs that are at most `reach` apart along each axis, those that are not negative.
+/// Differences of the numbers of DOFs that are at most `reach` apart along each axis, those that are not
+/// negative.
 fn offsets<const D: usize>(shape: [usize; D], reach: usize) -> Vec<usize> {
     let mut all = vec![0_isize];
     let mut stride = 1;

@@ -7,22 +7,24 @@ use crate::scalar::Scalar;
 
 /// Jumps of the highest derivative across faces of cells, squared and added to a matrix of masses.
 ///
-/// A function that only the few particles of a partly filled cell see has next to no mass: what is divided by it is magnified.
-/// Lumping such functions cures that and costs angular momentum. Instead (Burman 2010, "Ghost penalty"; Sticko & Kreiss 2016 for
-/// mass matrices) the field in that cell is tied to the polynomial in the next one. With $w_F$ a mass,
+/// A function that only the few particles of a partly filled cell see has next to no mass: what is divided by
+/// it is magnified. Lumping such functions cures that and costs angular momentum. Instead (Burman 2010,
+/// "Ghost penalty"; Sticko & Kreiss 2016 for mass matrices) the field in that cell is tied to the polynomial
+/// in the next one. With $w_F$ a mass,
 ///
 /// $$J(u, v) = \sum_F w_F\sum_j [h^p\partial_n^p u]_j\,[h^p\partial_n^p v]_j,$$
 ///
-/// $F$ the faces that were named, $n$ their normal, $j$ the functions along the face. It vanishes if one
-/// of $u$, $v$ is a polynomial of the basis's degree, so that neither sums (momentum) nor moments (angular momentum) of a
-/// product with the matrix know of it.
+/// $F$ the faces that were named, $n$ their normal, $j$ the functions along the face. It vanishes if one of
+/// $u$, $v$ is a polynomial of the basis's degree, so that neither sums (momentum) nor moments (angular
+/// momentum) of a product with the matrix know of it.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct Penalty<T, const D: usize> {
     jumps: [AxisJumps<T>; D],
     shape: [usize; D],
     strides: [usize; D],
-    /// For each axis, line between its cells and functions along the face the place of its form, [`NONE`] without one.
+    /// For each axis, line between its cells and functions along the face the place of its form, [`NONE`]
+    /// without one.
     places: [Vec<u32>; D],
     forms: [Vec<Form<T>>; D],
 }
@@ -168,8 +170,8 @@ mod tests {
     use approx::assert_relative_eq;
     use nalgebra::{SVector, vector};
 
-    /// Coefficients whose function is the polynomial with these values: for a basis of degree 2 the blossom, for others the
-    /// values at the nodes.
+    /// Coefficients whose function is the polynomial with these values: for a basis of degree 2 the blossom,
+    /// for others the values at the nodes.
     fn coefficients<B: BasisFamily<f64, 2>>(
         basis: &B,
         grid: &Grid<f64, 2>,

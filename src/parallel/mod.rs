@@ -1,11 +1,13 @@
 //! Work cut into spans that any number of threads may share without changing a bit of the result.
 //!
-//! A pass over particles or cells is cut into spans of fixed length. Each span writes to places of its own: its share of
-//! the particles, its *window* of the DOFs, its partial result. What several spans contribute to is added up span by span,
-//! in order. So the result depends on where the cuts are, which is fixed, and not on who did which span.
+//! A pass over particles or cells is cut into spans of fixed length. Each span writes to places of its own:
+//! its share of the particles, its *window* of the DOFs, its partial result. What several spans contribute to
+//! is added up span by span, in order. So the result depends on where the cuts are, which is fixed, and not
+//! on who did which span.
 //!
-//! Spans are halved recursively ([`each_span`]) and shared by `rayon::join`: nothing is allocated here, and little by rayon,
-//! when it wakes its threads. Without the feature `rayon`, or for one thread, the halves follow one another.
+//! Spans are halved recursively ([`each_span`]) and shared by `rayon::join`: nothing is allocated here, and
+//! little by rayon, when it wakes its threads. Without the feature `rayon`, or for one thread, the halves
+//! follow one another.
 
 mod sliced;
 mod windows;
@@ -18,12 +20,14 @@ pub(crate) const PARTICLES: usize = 4096;
 /// Occupied cells in a span.
 pub(crate) const CELLS: usize = 512;
 
-/// Calls `f(first, part)` for each span of `work`, `first` the index of its first item; several at once if `parallel`.
+/// Calls `f(first, part)` for each span of `work`, `first` the index of its first item; several at once if
+/// `parallel`.
 pub(crate) fn each_span<W: Sliced>(parallel: bool, span: usize, work: W, f: &(impl Fn(usize, W) + Sync)) {
     halve(parallel, span, 0, work, f);
 }
 
-/// Compiled once for each kind of work, not for each pass: what a span is passed to is called through a pointer.
+/// Compiled once for each kind of work, not for each pass: what a span is passed to is called through a
+/// pointer.
 #[inline(never)]
 fn halve<W: Sliced>(parallel: bool, span: usize, first: usize, work: W, f: &(dyn Fn(usize, W) + Sync)) {
     let spans = work.items().div_ceil(span);
@@ -47,8 +51,8 @@ fn halve<W: Sliced>(parallel: bool, span: usize, first: usize, work: W, f: &(dyn
     );
 }
 
-/// Does both, at once if `parallel`. Not generic, for the sake of compile time: a call through a pointer for thousands of
-/// particles costs nothing, `rayon::join` in every pass of every stepper minutes.
+/// Does both, at once if `parallel`. Not generic, for the sake of compile time: a call through a pointer for
+/// thousands of particles costs nothing, `rayon::join` in every pass of every stepper minutes.
 pub(crate) fn both(parallel: bool, a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
     #[cfg(feature = "rayon")]
     if parallel {
@@ -60,11 +64,11 @@ pub(crate) fn both(parallel: bool, a: &mut (dyn FnMut() + Send), b: &mut (dyn Fn
     b();
 }
 
-/// Does `work` as one of the threads that share spans: in the pool of this thread, or else in rayon's global one if it
-/// is `worth` being sent there.
+/// Does `work` as one of the threads that share spans: in the pool of this thread, or else in rayon's global
+/// one if it is `worth` being sent there.
 ///
-/// `rayon::join` outside of a pool sends its work there and sleeps until it is done. A step has twenty joins: so sent
-/// one by one, they cost more than a second thread brings, and the whole step is sent at once.
+/// `rayon::join` outside of a pool sends its work there and sleeps until it is done. A step has twenty joins:
+/// so sent one by one, they cost more than a second thread brings, and the whole step is sent at once.
 pub(crate) fn within_pool(worth: bool, work: &mut (dyn FnMut() + Send)) {
     #[cfg(feature = "rayon")]
     if worth && rayon::current_thread_index().is_none() && rayon::current_num_threads() > 1 {
@@ -74,13 +78,14 @@ pub(crate) fn within_pool(worth: bool, work: &mut (dyn FnMut() + Send)) {
     work();
 }
 
-/// Whether so many items, cut into spans, are enough for two threads: four spans along one axis, where a pass over a
-/// span takes some microseconds; two in the plane; one and a half in space, of which one thread leaves the other a third.
+/// Whether so many items, cut into spans, are enough for two threads: four spans along one axis, where a pass
+/// over a span takes some microseconds; two in the plane; one and a half in space, of which one thread leaves
+/// the other a third.
 ///
-/// Measured on cores that share a cache and on cores that do not (a word takes 0.3 microseconds to the other and back).
-/// On the latter, with plain steps along one axis, 8200 particles took two threads 1.2 times the time of one, 16 000
-/// took 0.9; in the plane 6100 took as long, 8100 took 0.85. Where the cache is shared it was 0.7, 0.6, 0.75 and 0.6,
-/// in space 0.75 with 5800 particles and 0.55 with 8000.
+/// Measured on cores that share a cache and on cores that do not (a word takes 0.3 microseconds to the other
+/// and back). On the latter, with plain steps along one axis, 8200 particles took two threads 1.2 times the
+/// time of one, 16 000 took 0.9; in the plane 6100 took as long, 8100 took 0.85. Where the cache is shared it
+/// was 0.7, 0.6, 0.75 and 0.6, in space 0.75 with 5800 particles and 0.55 with 8000.
 pub(crate) fn are_many<const D: usize>(items: usize, span: usize) -> bool {
     let half_spans = match D {
         1 => 8,

@@ -31,7 +31,8 @@ impl<Q> Default for Windows<'_, Q> {
 }
 
 impl<'a, Q: Copy + Zero + Send> Windows<'a, Q> {
-    /// Empty sums for all of `spans`: in `storage`, or right in the DOFs' `sums` where there is a single span.
+    /// Empty sums for all of `spans`: in `storage`, or right in the DOFs' `sums` where there is a single
+    /// span.
     pub(crate) fn new(
         spans: &'a [SpanWindow],
         storage: &'a mut Vec<Q>,
@@ -87,7 +88,8 @@ pub(crate) fn fit<Q: Copy + Zero>(spans: &[SpanWindow], storage: &mut Vec<Q>, wi
     storage.resize(count, Q::zero());
 }
 
-/// Adds the `values` of the windows, span by span, up in the DOFs' `sums`; nothing to do where there is a single span.
+/// Adds the `values` of the windows, span by span, up in the DOFs' `sums`; nothing to do where there is a
+/// single span.
 pub(crate) fn add_up<Q: Copy + Zero>(spans: &[SpanWindow], values: &[Q], sums: &mut [Q], width: usize) {
     if spans.len() <= 1 {
         return;

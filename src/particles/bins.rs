@@ -200,7 +200,8 @@ impl<const D: usize> Bins<D> {
         &self.occupied
     }
 
-    /// Place among the occupied cells of the one with number `cell`, if it is one; found at once next to the place `near`.
+    /// Place among the occupied cells of the one with number `cell`, if it is one; found at once next to the
+    /// place `near`.
     #[inline(always)]
     pub(crate) fn place_of(&self, cell: usize, near: usize) -> Option<usize> {
         let at = |place: usize| self.occupied.get(place).is_some_and(|&c| c as usize == cell);
@@ -210,8 +211,8 @@ impl<const D: usize> Bins<D> {
             .or_else(|| self.occupied.binary_search(&(cell as u32)).ok())
     }
 
-    /// Calls `f(axis, above, place)` for the occupied cells that share a face with the one at `place` in the list of the
-    /// occupied: above or below it along an axis, and their own places.
+    /// Calls `f(axis, above, place)` for the occupied cells that share a face with the one at `place` in the
+    /// list of the occupied: above or below it along an axis, and their own places.
     #[inline(always)]
     pub fn for_each_neighbour<T: Scalar>(
         &self,
@@ -240,8 +241,8 @@ impl<const D: usize> Bins<D> {
         }
     }
 
-    /// Bytes allocated: per particle its cell and its place in the lists, per cell the start of its list and its place
-    /// among the occupied.
+    /// Bytes allocated: per particle its cell and its place in the lists, per cell the start of its list and
+    /// its place among the occupied.
     pub fn bytes(&self) -> usize {
         let lists = self.start.capacity() + self.order.capacity() + self.occupied.capacity();
         self.cell_of.capacity() * size_of::<Cell<D>>() + lists * size_of::<u32>()

@@ -13,7 +13,8 @@ impl<T: Scalar, const D: usize, S: Clone, P: Clone> Particles<T, D, S, P> {
 }
 
 impl<T: Scalar, const D: usize, S, P> Particles<T, D, S, P> {
-    /// [`Particles::cast`] without a second copy: array by array, and into a scalar of the same size in place.
+    /// [`Particles::cast`] without a second copy: array by array, and into a scalar of the same size in
+    /// place.
     pub fn into_cast<U: Scalar, S2: Copy + Default, P2: Copy + Default>(self) -> Particles<U, D, S2, P2> {
         let n = self.position.len();
         Particles {

@@ -11,9 +11,10 @@ use crate::scalar::Scalar;
 impl<T: Scalar, const D: usize, S: Copy, P> Particles<T, D, S, P> {
     /// Gives every particle the state of `law` that belongs to its stress.
     ///
-    /// A law whose stress follows from a state forgets [`Particles::stress`] in its first update if that state is left at
-    /// rest. `off_plane` gives the stress (Pa) of particle `p` along the axes that the grid does not have, or `None` for what elastic
-    /// plane strain brings; see [`ConstitutiveLaw::start`](crate::law::ConstitutiveLaw::start).
+    /// A law whose stress follows from a state forgets [`Particles::stress`] in its first update if that
+    /// state is left at rest. `off_plane` gives the stress (Pa) of particle `p` along the axes that the grid
+    /// does not have, or `None` for what elastic plane strain brings; see
+    /// [`ConstitutiveLaw::start`](crate::law::ConstitutiveLaw::start).
     ///
     /// # Errors
     /// If the law has no state for the stress of a particle; the states before it are set.

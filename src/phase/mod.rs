@@ -14,9 +14,9 @@ use crate::scalar::Scalar;
 
 /// What a particle carries besides its solid, and how that enters the balance of momentum.
 ///
-/// [`OnePhase`] is the dry solid: no data, no work. [`TwoPhase`] is a solid whose pores are full of a liquid that moves
-/// with a velocity of its own. Everything a phase adds to the step stands under `if P::COUPLED` or `if P::FLOWS`, since
-/// zero-sized data alone leave empty loops behind.
+/// [`OnePhase`] is the dry solid: no data, no work. [`TwoPhase`] is a solid whose pores are full of a liquid
+/// that moves with a velocity of its own. Everything a phase adds to the step stands under `if P::COUPLED` or
+/// `if P::FLOWS`, since zero-sized data alone leave empty loops behind.
 ///
 /// The hooks below [`Phase::validate`] are asked only of a phase that [`Phase::FLOWS`], which must write each
 /// of them: one that it forgets is an error at compile time, as soon as a stepper is made of it. Masses and
@@ -36,11 +36,13 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
     /// Stress (Pa) that the momentum balance of the whole feels, given the solid's effective stress.
     fn total_stress(&self, effective: &SMatrix<T, D, D>, particle: &Self::Particle) -> SMatrix<T, D, D>;
 
-    /// Carries the data of a phase that does not flow over the displacement gradient `increment` of one step. Asked of copies
-    /// of the data too, with small increments, to find how stiff the phase is: nothing but the data may change.
+    /// Carries the data of a phase that does not flow over the displacement gradient `increment` of one step.
+    /// Asked of copies of the data too, with small increments, to find how stiff the phase is: nothing but
+    /// the data may change.
     fn update(&self, increment: &SMatrix<T, D, D>, particle: &mut Self::Particle);
 
-    /// Energy that the phase stores beside the strain energy of the law, per volume (J/m3): heat, a compressed liquid.
+    /// Energy that the phase stores beside the strain energy of the law, per volume (J/m3): heat, a
+    /// compressed liquid.
     fn energy_density(&self, _particle: &Self::Particle) -> T {
         const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `energy_density`") };
         T::zero()
@@ -97,7 +99,8 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
         T::zero()
     }
 
-    /// Drag of a particle (kg/s in 3-D): the force on its liquid, per porosity, for each m/s by which the solid is faster.
+    /// Drag of a particle (kg/s in 3-D): the force on its liquid, per porosity, for each m/s by which the
+    /// solid is faster.
     fn drag(&self, _solid_mass: T, _volume: T) -> T {
         const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `drag`") };
         T::zero()
@@ -109,7 +112,8 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
         Drag::Implicit
     }
 
-    /// Stiffness (Pa) of the liquid in its pores: pressure rate per volume rate of the liquid's flow, `K / n`.
+    /// Stiffness (Pa) of the liquid in its pores: pressure rate per volume rate of the liquid's flow,
+    /// `K / n`.
     fn liquid_stiffness(&self) -> T {
         const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `liquid_stiffness`") };
         T::zero()

@@ -12,7 +12,8 @@ pub enum Drag {
     /// By the velocities at the end of the step, DOF by DOF: no limit on the step.
     #[default]
     Implicit,
-    /// By the velocities at its start, as published: the step is limited by the drag where the permeability is small.
+    /// By the velocities at its start, as published: the step is limited by the drag where the permeability
+    /// is small.
     Explicit,
 }
 
@@ -52,8 +53,9 @@ impl<T: Scalar, const D: usize> Default for PoreLiquid<T, D> {
 /// $$(1-n)\rho_s\dot v_s + n\rho_w\dot v_w = \nabla\cdot(\sigma' + p) + ((1-n)\rho_s + n\rho_w) b,$$
 /// $$\dot p = \frac{K_w}{n}\left((1-n)\operatorname{tr}\nabla v_s + n\operatorname{tr}\nabla v_w\right).$$
 ///
-/// The particles' own mass is the solid's, $(1-n)\rho_s V_0$, constant; the liquid's is $n\rho_w V$: liquid flows through.
-/// The porosity is a constant: carried along with the strain it would amplify noise by $K_w/n$.
+/// The particles' own mass is the solid's, $(1-n)\rho_s V_0$, constant; the liquid's is $n\rho_w V$: liquid
+/// flows through. The porosity is a constant: carried along with the strain it would amplify noise by
+/// $K_w/n$.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoPhase<T> {

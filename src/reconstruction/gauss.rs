@@ -52,9 +52,10 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
         Self { nodes, bounds }
     }
 
-    /// Draws the fit of a density towards its mean, with all fields that are fitted beside it (so that the velocity that mass and
-    /// momentum share stays), as far as it must for the density to be positive at the points: [`LEAST_DENSITY`] of its mean.
-    /// Every function but the mean integrates to zero (by two points an axis and more), so the integral stays. Also says whether anything had to be done.
+    /// Draws the fit of a density towards its mean, with all fields that are fitted beside it (so that the
+    /// velocity that mass and momentum share stays), as far as it must for the density to be positive at the
+    /// points: [`LEAST_DENSITY`] of its mean. Every function but the mean integrates to zero (by two points
+    /// an axis and more), so the integral stays. Also says whether anything had to be done.
     #[inline(always)]
     pub(super) fn keep_positive<Q: Field<T>>(&self, coefficients: [Q; NB]) -> ([Q; NB], bool) {
         let clearly = (0..Q::COMPONENTS).all(|q| {
@@ -121,8 +122,9 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
         negative
     }
 
-    /// Points along each axis for a basis of degree `degree`: two as published for degrees 1 and 2, `degree + 1` beyond. Two
-    /// points would make a cubic basis lose an order in the stress, because they integrate its mass matrix too crudely.
+    /// Points along each axis for a basis of degree `degree`: two as published for degrees 1 and 2,
+    /// `degree + 1` beyond. Two points would make a cubic basis lose an order in the stress, because they
+    /// integrate its mass matrix too crudely.
     pub(super) fn points_for_degree(degree: usize) -> usize {
         if degree > 2 { degree + 1 } else { 2 }
     }
@@ -133,7 +135,8 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
         self.nodes.iter().take_while(beyond).map(|node| node.s[0])
     }
 
-    /// Streams polynomials over four cells of the given volume: the number of the point, then the values times the weight.
+    /// Streams polynomials over four cells of the given volume: the number of the point, then the values
+    /// times the weight.
     #[inline(always)]
     pub(super) fn emit_lanes<K: Packs<T>, const C: usize>(
         &self,

@@ -2,7 +2,8 @@
 //!
 //! A reconstruction streams *points with weighted values*; the weak form sums `weighted value * phi_i` or
 //! `weighted value * grad phi_i` and never knows where the points came from. Shepard streams the particles
-//! themselves, sub-points are spread over each particle's domain, Taylor least squares and the cubic spline stream Gauss points.
+//! themselves, sub-points are spread over each particle's domain, Taylor least squares and the cubic spline
+//! stream Gauss points.
 
 mod gauss;
 mod patch;
@@ -102,7 +103,8 @@ impl<'a, T: Scalar, const D: usize> Cloud<'a, T, D> {
     }
 }
 
-/// The occupied cells at the given places, four at most and one at least; the last one again in the place of others.
+/// The occupied cells at the given places, four at most and one at least; the last one again in the place of
+/// others.
 #[inline(always)]
 pub(crate) fn batch_of_cells<T: Scalar, const D: usize>(
     cloud: &Cloud<'_, T, D>,
@@ -211,32 +213,35 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     /// Whether [`Reconstruction::integrate`] streams the particles.
     const FIELDS_AT_PARTICLES: bool;
 
-    /// Whether [`Reconstruction::integrate_conserved`] streams the particles. The mass of the DOFs is then the
-    /// sum over the particles, lumped unless [`Reconstruction::PARTICLE_MATRIX`].
+    /// Whether [`Reconstruction::integrate_conserved`] streams the particles. The mass of the DOFs is then
+    /// the sum over the particles, lumped unless [`Reconstruction::PARTICLE_MATRIX`].
     const AMOUNTS_AT_PARTICLES: bool;
 
-    /// Whether everything is streamed once at each particle, with the volume or amount that it has: the step then sums over the
-    /// particles in passes of its own.
+    /// Whether everything is streamed once at each particle, with the volume or amount that it has: the step
+    /// then sums over the particles in passes of its own.
     const PLAIN: bool = false;
 
-    /// Whether both the acceleration and the velocity of the DOFs come from the consistent mass matrix of the particles,
-    /// `sum_p m_p phi_i phi_j`. Only with [`Reconstruction::AMOUNTS_AT_PARTICLES`].
+    /// Whether both the acceleration and the velocity of the DOFs come from the consistent mass matrix of the
+    /// particles, `sum_p m_p phi_i phi_j`. Only with [`Reconstruction::AMOUNTS_AT_PARTICLES`].
     const PARTICLE_MATRIX: bool = false;
 
-    /// Whether each cell can be streamed alone, so that threads may share them ([`Reconstruction::integrate_cells`]).
+    /// Whether each cell can be streamed alone, so that threads may share them
+    /// ([`Reconstruction::integrate_cells`]).
     const CELLWISE: bool = false;
 
     /// Whether [`Reconstruction::relax`] does anything.
     const RELAXES: bool = false;
 
-    /// Whether four cells can be streamed at once without [`Reconstruction::prepare`] ([`Reconstruction::integrate_batch`]).
+    /// Whether four cells can be streamed at once without [`Reconstruction::prepare`]
+    /// ([`Reconstruction::integrate_batch`]).
     const BATCHED: bool = false;
 
-    /// Numbers of each of four cells that [`Reconstruction::integrate_batch`] keeps where it does not conserve, and takes up again
-    /// where it does.
+    /// Numbers of each of four cells that [`Reconstruction::integrate_batch`] keeps where it does not
+    /// conserve, and takes up again where it does.
     const KEPT: usize = 0;
 
-    /// Whether [`Reconstruction::integrate_batch`] wants what [`Reconstruction::prepare`] and [`Reconstruction::fit_field`] took in.
+    /// Whether [`Reconstruction::integrate_batch`] wants what [`Reconstruction::prepare`] and
+    /// [`Reconstruction::fit_field`] took in.
     const NON_LOCAL: bool = false;
 
     /// Takes in the geometry. Every field streamed until the next call shares it.
@@ -263,14 +268,14 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     /// A liquid flows: its pressure will be reconstructed with the stress.
     fn configure_for_saturated(&mut self) {}
 
-    /// Takes in the field that [`Reconstruction::integrate_cells`] or [`Reconstruction::integrate_batch`] will stream next, where a
-    /// cell's fit wants the values of its neighbours.
+    /// Takes in the field that [`Reconstruction::integrate_cells`] or [`Reconstruction::integrate_batch`]
+    /// will stream next, where a cell's fit wants the values of its neighbours.
     fn fit_field<Q: Field<T>>(&mut self, _cloud: &Cloud<'_, T, D>, _value: &(impl Values<T, Q> + Sync)) {
         const { assert!(!Self::NON_LOCAL, "NON_LOCAL wants an own `fit_field`") };
     }
 
-    /// What [`Reconstruction::integrate`] streams in the given `cells`, places in the list of occupied ones. Only asked where
-    /// [`Reconstruction::CELLWISE`].
+    /// What [`Reconstruction::integrate`] streams in the given `cells`, places in the list of occupied ones.
+    /// Only asked where [`Reconstruction::CELLWISE`].
     fn integrate_cells<Q: Field<T>>(
         &self,
         _cloud: &Cloud<'_, T, D>,
@@ -298,17 +303,19 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         };
     }
 
-    /// Coordinates in a cell, each in `[-1, 1]`, of the points along an axis whose products [`Reconstruction::integrate_batch`]
-    /// streams, axis 0 fastest; none if it cannot as it is set up.
+    /// Coordinates in a cell, each in `[-1, 1]`, of the points along an axis whose products
+    /// [`Reconstruction::integrate_batch`] streams, axis 0 fastest; none if it cannot as it is set up.
     fn line(&self) -> impl Iterator<Item = T> {
         const { assert!(!Self::BATCHED, "BATCHED wants an own `line`") };
         std::iter::empty()
     }
 
-    /// What [`Reconstruction::integrate_conserved`] streams, if `conserve`, or else [`Reconstruction::integrate`], in up to four
-    /// `cells`, places in the list of occupied ones from a multiple of four on: one cell in each lane, the number of the point and the components of the
-    /// value. `value` is that of a particle: in the first case its density. Only asked where [`Reconstruction::BATCHED`]; returns in
-    /// which cells it failed (those that a surface cuts always), so that they must be streamed by [`Reconstruction::integrate_single`].
+    /// What [`Reconstruction::integrate_conserved`] streams, if `conserve`, or else
+    /// [`Reconstruction::integrate`], in up to four `cells`, places in the list of occupied ones from a
+    /// multiple of four on: one cell in each lane, the number of the point and the components of the value.
+    /// `value` is that of a particle: in the first case its density. Only asked where
+    /// [`Reconstruction::BATCHED`]; returns in which cells it failed (those that a surface cuts always), so
+    /// that they must be streamed by [`Reconstruction::integrate_single`].
     fn integrate_batch<K: Packs<T>, Q: Field<T>>(
         &self,
         _k: K,
@@ -322,8 +329,8 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         BatchStatus::default()
     }
 
-    /// The same in one cell that is given by its number, point by point; returns whether it was fitted with the full set of
-    /// functions.
+    /// The same in one cell that is given by its number, point by point; returns whether it was fitted with
+    /// the full set of functions.
     fn integrate_single<Q: Field<T>>(
         &self,
         _cloud: &Cloud<'_, T, D>,
@@ -336,10 +343,11 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         true
     }
 
-    /// Moves the particles' `values` towards what the reconstruction sees of them; `weights` (masses) make the fit keep
-    /// the weighted sum. `crossed` says for each occupied cell which part of it a wave and its particles cross in this step: the measures of
-    /// time for a relaxation. The stepper calls it for the stress, unweighted, right after the force is assembled (a law with a state is
-    /// then strained towards the moved stress), and for the velocity, weighted, before it is mapped to the DOFs.
+    /// Moves the particles' `values` towards what the reconstruction sees of them; `weights` (masses) make
+    /// the fit keep the weighted sum. `crossed` says for each occupied cell which part of it a wave and its
+    /// particles cross in this step: the measures of time for a relaxation. The stepper calls it for the
+    /// stress, unweighted, right after the force is assembled (a law with a state is then strained towards
+    /// the moved stress), and for the velocity, weighted, before it is mapped to the DOFs.
     fn relax<Q: Field<T>>(
         &mut self,
         _cloud: &Cloud<'_, T, D>,
@@ -350,9 +358,9 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         const { assert!(!Self::RELAXES, "RELAXES wants an own `relax`") };
     }
 
-    /// How far the particles of the occupied cell at `place` in the list of those determine its functions. Beyond one dimension the
-    /// stepper ties the functions of cells that are not full to those of the next ones ([`crate::mass::Penalty`]); those of cells that
-    /// are alone it lumps. Only asked where
+    /// How far the particles of the occupied cell at `place` in the list of those determine its functions.
+    /// Beyond one dimension the stepper ties the functions of cells that are not full to those of the next
+    /// ones ([`crate::mass::Penalty`]); those of cells that are alone it lumps. Only asked where
     /// [`Reconstruction::PARTICLE_MATRIX`].
     fn filling(&self, _place: usize) -> Filling {
         const {
@@ -370,19 +378,21 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         0
     }
 
-    /// Cells that, at the last [`Reconstruction::prepare`], were fitted with virtual points: values that neighbouring
-    /// cells lend because the particles do not determine a fit.
+    /// Cells that, at the last [`Reconstruction::prepare`], were fitted with virtual points: values that
+    /// neighbouring cells lend because the particles do not determine a fit.
     fn virtual_cells(&self) -> usize {
         0
     }
 
-    /// Cells in which the last [`Reconstruction::integrate_conserved`] had to keep a density positive ([`Field::DENSITIES`]), and
-    /// drew all that it streamed towards its mean. What belongs to those densities must be streamed together with them there.
+    /// Cells in which the last [`Reconstruction::integrate_conserved`] had to keep a density positive
+    /// ([`Field::DENSITIES`]), and drew all that it streamed towards its mean. What belongs to those
+    /// densities must be streamed together with them there.
     fn limited_cells(&self) -> usize {
         0
     }
 
-    /// Whether cells may borrow virtual points, where the reconstruction knows any ([`Taylor::with_virtual_points`]).
+    /// Whether cells may borrow virtual points, where the reconstruction knows any
+    /// ([`Taylor::with_virtual_points`]).
     fn lend_virtual_points(&mut self, _lent: bool) {}
 
     /// Bytes allocated, for the user's information.

@@ -43,8 +43,8 @@ impl<T: Scalar, const D: usize> Patch<T, D> {
         }
     }
 
-    /// What `cuts` leave of the cell with number `cell`. Cuts that would leave nothing are not made: neither is where one body ends
-    /// below the start of another.
+    /// What `cuts` leave of the cell with number `cell`. Cuts that would leave nothing are not made: neither
+    /// is where one body ends below the start of another.
     pub fn cut(grid: &Grid<T, D>, cell: usize, cuts: &[Cut<T>]) -> Self {
         let mut patch = Self::whole(grid, cell);
         let ends = [patch.centre[0] - patch.half[0], patch.centre[0] + patch.half[0]];

@@ -7,8 +7,9 @@ use crate::field::Field;
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
 
-/// Cubic not-a-knot spline through all particle values (Tielen, Wobbes, Moller & Beuth 2017), 1-D only, evaluated
-/// at Gauss points of the occupied cells (up to the surface in a cell that it cuts). Accurate, but it keeps neither mass nor momentum.
+/// Cubic not-a-knot spline through all particle values (Tielen, Wobbes, Moller & Beuth 2017), 1-D only,
+/// evaluated at Gauss points of the occupied cells (up to the surface in a cell that it cuts). Accurate, but
+/// it keeps neither mass nor momentum.
 ///
 /// Beyond the outermost particles the end polynomials are continued. Particles at one and the same position
 /// enter with the mean of their values. With three distinct positions the spline is a parabola, with two a
@@ -56,9 +57,9 @@ impl<T: Scalar> CubicSpline<T> {
         }
     }
 
-    /// Keeps `order` sorted: an insertion sort, since from step to step it hardly changes. Particles at one position come by
-    /// their index, so that the order depends on where they are now and not on how they came there: a resumed run, which
-    /// does not know that, adds their values up in the same order.
+    /// Keeps `order` sorted: an insertion sort, since from step to step it hardly changes. Particles at one
+    /// position come by their index, so that the order depends on where they are now and not on how they came
+    /// there: a resumed run, which does not know that, adds their values up in the same order.
     fn sort(&mut self, positions: &[SVector<T, 1>]) {
         let n = positions.len();
         if self.order.len() != n {
@@ -141,8 +142,9 @@ impl<T: Scalar> CubicSpline<T> {
         }
     }
 
-    /// Splines through the components of the values: fills `curvatures` (second derivatives). All components of a knot
-    /// before the next knot: the recurrences of one component wait for each other, those of several do not.
+    /// Splines through the components of the values: fills `curvatures` (second derivatives). All components
+    /// of a knot before the next knot: the recurrences of one component wait for each other, those of several
+    /// do not.
     #[inline(always)]
     fn interpolate(&mut self, stride: usize) {
         let n = self.knots.len();

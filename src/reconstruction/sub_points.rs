@@ -9,21 +9,24 @@ use crate::field::Field;
 use crate::grid::{Cell, Grid};
 use crate::scalar::Scalar;
 
-/// Streams a field at `S` sub-points per axis of each particle's current domain, each with the weight `V_p / S^D`, and the
-/// amounts (mass, momentum) at the particles as [`Shepard`] does: the dual domain method with sub-points of Dhakal & Zhang
-/// (J. Comput. Phys. 325, 2016; journal Table 8), made for [`DualDomain`](crate::basis::DualDomain) and usable with any family.
+/// Streams a field at `S` sub-points per axis of each particle's current domain, each with the weight
+/// `V_p / S^D`, and the amounts (mass, momentum) at the particles as [`Shepard`] does: the dual domain method
+/// with sub-points of Dhakal & Zhang (J. Comput. Phys. 325, 2016; journal Table 8), made for
+/// [`DualDomain`](crate::basis::DualDomain) and usable with any family.
 ///
-/// * **Domain.** A box of volume `V_p` around the particle, in the shape of a cell: in 1-D `[x_p - V_p/2, x_p + V_p/2]`. It
-///   grows and shrinks with the volume and does not turn or shear.
-/// * **Sub-points.** The midpoints of `S` equal parts of the box along each axis, so that one sub-point is the particle, to the
-///   bit [`Shepard`]. The field is constant over the domain.
-/// * **Gradients.** The family's gradients for moving points ([`Point::moves`]), since sub-points cross cell edges.
-/// * **Where there is no material.** A sub-point outside the grid (beyond a wall), or in a cell that holds no particle, is drawn
-///   to the nearest point of its particle's cell. The weight stays, and no force is put on a DOF beyond the material,
-///   which has no mass to take it and would lose its momentum.
+/// * **Domain.** A box of volume `V_p` around the particle, in the shape of a cell: in 1-D
+///   `[x_p - V_p/2, x_p + V_p/2]`. It grows and shrinks with the volume and does not turn or shear.
+/// * **Sub-points.** The midpoints of `S` equal parts of the box along each axis, so that one sub-point is
+///   the particle, to the bit [`Shepard`]. The field is constant over the domain.
+/// * **Gradients.** The family's gradients for moving points ([`Point::moves`]), since sub-points cross cell
+///   edges.
+/// * **Where there is no material.** A sub-point outside the grid (beyond a wall), or in a cell that holds no
+///   particle, is drawn to the nearest point of its particle's cell. The weight stays, and no force is put on
+///   a DOF beyond the material, which has no mass to take it and would lose its momentum.
 ///
-/// Sub-points serve the force alone. The strain of a particle is taken at the particle itself, not averaged over its domain, so
-/// that the work of the force and that of the stress differ: with one particle per cell enough to gain energy.
+/// Sub-points serve the force alone. The strain of a particle is taken at the particle itself, not averaged
+/// over its domain, so that the work of the force and that of the stress differ: with one particle per cell
+/// enough to gain energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SubPoints {
     per_axis: usize,
@@ -81,7 +84,8 @@ fn domain<T: Scalar, const D: usize>(grid: &Grid<T, D>, volume: T) -> SVector<T,
     *grid.cell_size() * side
 }
 
-/// The cell that `position` counts in, for a particle in the cell `own`; draws the position there if no other holds it.
+/// The cell that `position` counts in, for a particle in the cell `own`; draws the position there if no other
+/// holds it.
 #[inline]
 fn settle<T: Scalar, const D: usize>(
     cloud: &Cloud<'_, T, D>,

@@ -26,21 +26,25 @@ use crate::taylor::{
     default_tolerance, kept, taylor_functions,
 };
 
-/// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor functions through
-/// the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3 dimensions.
+/// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor
+/// functions through the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3
+/// dimensions.
 ///
 /// $$\hat q_e = \sum_k a_k\psi_k,\qquad \int_e\hat q_e = a_1|e|.$$
 ///
-/// Fields (stress) are fitted freely; densities (mass, momentum) keep the cell's integral, because their $a_1$ is the cell's
-/// amount over its volume (journal, equation 14). A cell that a body's surface cuts is fitted and integrated up to the
-/// surface ([`Cloud::cuts`]). The functions are those of [`mod@crate::taylor`].
+/// Fields (stress) are fitted freely; densities (mass, momentum) keep the cell's integral, because their
+/// $a_1$ is the cell's amount over its volume (journal, equation 14). A cell that a body's surface cuts is
+/// fitted and integrated up to the surface ([`Cloud::cuts`]). The functions are those of
+/// [`mod@crate::taylor`].
 ///
-/// A density of mass stays positive at the Gauss points (at least 1 % of the cell's mean): where a fit would be less, all its
-/// coefficients but $a_1$, and those of the momentum beside it, are scaled by one factor, which keeps the cell's integrals.
+/// A density of mass stays positive at the Gauss points (at least 1 % of the cell's mean): where a fit would
+/// be less, all its coefficients but $a_1$, and those of the momentum beside it, are scaled by one factor,
+/// which keeps the cell's integrals.
 ///
-/// A cell never uses more functions than it has points, nor one that its layout cannot tell from the others: that share of
-/// each function is measured before it is fitted. Where the particles do not determine all functions, *virtual points* can lend a
-/// hand ([`Taylor::with_virtual_points`]); what they do not determine either is left out.
+/// A cell never uses more functions than it has points, nor one that its layout cannot tell from the others:
+/// that share of each function is measured before it is fitted. Where the particles do not determine all
+/// functions, *virtual points* can lend a hand ([`Taylor::with_virtual_points`]); what they do not determine
+/// either is left out.
 #[doc = include_str!("../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct Taylor<T, const D: usize, const NB: usize> {
@@ -151,19 +155,20 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         }
     }
 
-    /// Drops a function where, on a cell's particles, less than the share `tolerance` of it is left after the functions
-    /// before it ([`default_tolerance`]).
+    /// Drops a function where, on a cell's particles, less than the share `tolerance` of it is left after the
+    /// functions before it ([`default_tolerance`]).
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: T) -> Self {
         self.tolerance = tolerance;
         self
     }
 
-    /// Lets a cell whose particles do not determine its fit borrow *virtual points* (journal section 5.3), in one dimension and
-    /// where there are particles in both neighbouring cells: from each of these that is fitted by its own particles with all
-    /// functions, the value of that fit at the common edge is one more point of the least squares. It never enters the mean, so
-    /// every amount is kept as without. Off by default: a smooth field is fitted much better, but runs are no more accurate
-    /// (figures in `docs/verification/stability.md`).
+    /// Lets a cell whose particles do not determine its fit borrow *virtual points* (journal section 5.3), in
+    /// one dimension and where there are particles in both neighbouring cells: from each of these that is
+    /// fitted by its own particles with all functions, the value of that fit at the common edge is one more
+    /// point of the least squares. It never enters the mean, so every amount is kept as without. Off by
+    /// default: a smooth field is fitted much better, but runs are no more accurate (figures in
+    /// `docs/verification/stability.md`).
     #[must_use]
     pub fn with_virtual_points(mut self, lent: bool) -> Self {
         self.virtual_points = lent;
@@ -182,7 +187,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
             .collect()
     }
 
-    /// Coefficients in every occupied cell, ascending, of the fit through the `value`s whose mean is `mean(cell)`.
+    /// Coefficients in every occupied cell, ascending, of the fit through the `value`s whose mean is
+    /// `mean(cell)`.
     pub fn coefficients_with_mean<Q: Field<T>>(
         &self,
         cloud: &Cloud<'_, T, D>,
@@ -194,8 +200,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
             .collect()
     }
 
-    /// Streams the fit through the `value`s whose mean is `mean(cell)`: to keep an integral that is known from
-    /// elsewhere.
+    /// Streams the fit through the `value`s whose mean is `mean(cell)`: to keep an integral that is known
+    /// from elsewhere.
     pub fn integrate_with_mean<Q: Field<T>>(
         &self,
         cloud: &Cloud<'_, T, D>,
@@ -264,8 +270,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         conserved(cell.fits, cloud, cell.number, amount)
     }
 
-    /// Streams the conserved fits in `cells`, places in the list of occupied ones; returns in how many a density had to be
-    /// kept positive.
+    /// Streams the conserved fits in `cells`, places in the list of occupied ones; returns in how many a
+    /// density had to be kept positive.
     #[inline(always)]
     fn stream_conserved<Q: Field<T>>(
         &self,
@@ -317,7 +323,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         four
     }
 
-    /// Coefficients of the fits of four cells. Out of line: it knows nothing of a basis, and is compiled once for all.
+    /// Coefficients of the fits of four cells. Out of line: it knows nothing of a basis, and is compiled once
+    /// for all.
     #[inline(never)]
     fn fit_four<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,

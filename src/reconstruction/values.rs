@@ -11,7 +11,8 @@ pub trait Values<T: Scalar, Q: Field<T>> {
     /// The value at one particle.
     fn at(&self, particle: usize) -> Q;
 
-    /// The components, `C` at most, of the values at four particles that follow each other, one particle in each lane.
+    /// The components, `C` at most, of the values at four particles that follow each other, one particle in
+    /// each lane.
     #[inline(always)]
     fn four<K: Packs<T>, const C: usize>(&self, k: K, first: usize) -> [K::V; C] {
         lanes_of(
@@ -124,8 +125,8 @@ impl<T: Scalar, const D: usize> Values<T, MassMomentum<T, D>> for Densities<'_, 
     }
 }
 
-/// What `make` makes of four values that follow each other, `nothing` where there are not so many. It is asked in one branch
-/// alone: four numbers are then one load.
+/// What `make` makes of four values that follow each other, `nothing` where there are not so many. It is
+/// asked in one branch alone: four numbers are then one load.
 #[inline(always)]
 pub(super) fn four_of<A, V>(values: &[A], first: usize, nothing: V, make: impl Fn(&[A; LANES]) -> V) -> V {
     match values[first..first + LANES].first_chunk() {

@@ -6,9 +6,9 @@ use nalgebra::DMatrix;
 
 /// The Gauss-Lobatto-Legendre rule of one polynomial degree, and the Lagrange polynomials on its nodes.
 ///
-/// The nodes are -1, 1 and the zeros of the Legendre polynomial's derivative. The quadrature is exact for polynomials
-/// of degree `2 p - 1`. Source: C. Canuto, M. Y. Hussaini, A. Quarteroni, T. A. Zang, *Spectral Methods: Fundamentals
-/// in Single Domains*, Springer 2006, section 2.3.
+/// The nodes are -1, 1 and the zeros of the Legendre polynomial's derivative. The quadrature is exact for
+/// polynomials of degree `2 p - 1`. Source: C. Canuto, M. Y. Hussaini, A. Quarteroni, T. A. Zang, *Spectral
+/// Methods: Fundamentals in Single Domains*, Springer 2006, section 2.3.
 #[derive(Clone, Debug)]
 pub(super) struct Lobatto {
     nodes: Vec<f64>,
@@ -55,8 +55,8 @@ impl Lobatto {
         self.differentiation.chunks_exact(self.nodes.len())
     }
 
-    /// One row for each node `i`: weight `j` times derivative of Lagrange polynomial `i` at node `j`. Applied to nodal
-    /// values of a stress it gives the internal forces.
+    /// One row for each node `i`: weight `j` times derivative of Lagrange polynomial `i` at node `j`. Applied
+    /// to nodal values of a stress it gives the internal forces.
     pub(super) fn weak_derivative(&self) -> Vec<f64> {
         let n = self.nodes.len();
         let entry = |i: usize, j: usize| self.weights[j] * self.differentiation[j * n + i];
@@ -77,11 +77,11 @@ impl Lobatto {
         numerator / denominator
     }
 
-    /// Largest eigenvalue of the stiffness matrix against the diagonal mass matrix, both on [-1, 1] and of unit
-    /// coefficients.
+    /// Largest eigenvalue of the stiffness matrix against the diagonal mass matrix, both on [-1, 1] and of
+    /// unit coefficients.
     ///
-    /// An assembled problem cannot exceed the largest eigenvalue of its elements (B. M. Irons and G. Treharne 1971;
-    /// I. Fried 1972), because its Rayleigh quotient is a mean of theirs.
+    /// An assembled problem cannot exceed the largest eigenvalue of its elements (B. M. Irons and G. Treharne
+    /// 1971; I. Fried 1972), because its Rayleigh quotient is a mean of theirs.
     pub(super) fn largest_eigenvalue(&self) -> f64 {
         let n = self.nodes.len();
         let root = |i: usize| self.weights[i].sqrt();

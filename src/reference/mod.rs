@@ -1,8 +1,9 @@
-//! Exact and converged solutions for a one-phase continuum and for saturated soil, against which the errors of material point
-//! runs are measured.
+//! Exact and converged solutions for a one-phase continuum and for saturated soil, against which the errors
+//! of material point runs are measured.
 //!
-//! SI units, stresses positive in tension, `f64` throughout. Every solution is asked by *material* point: the state at
-//! time `t` of the point that was at `x0` at time 0, because that is what a material point of the method carries.
+//! SI units, stresses positive in tension, `f64` throughout. Every solution is asked by *material* point: the
+//! state at time `t` of the point that was at `x0` at time 0, because that is what a material point of the
+//! method carries.
 //!
 //! | solution | nature | benchmark |
 //! |---|---|---|
@@ -21,8 +22,9 @@
 //!
 //! Soil has its own state and trait, see [`two_phase`].
 //!
-//! The benchmarks are those of Wobbes, Möller, Galavi and Vuik, *Conservative Taylor least squares reconstruction with
-//! application to material point methods*, Int. J. Numer. Methods Eng. 117 (2019), doi 10.1002/nme.5956.
+//! The benchmarks are those of Wobbes, Möller, Galavi and Vuik, *Conservative Taylor least squares
+//! reconstruction with application to material point methods*, Int. J. Numer. Methods Eng. 117 (2019), doi
+//! 10.1002/nme.5956.
 
 mod check;
 mod entropy_bar;
@@ -56,20 +58,21 @@ pub struct State {
 
 /// A solution that material points can be compared with.
 ///
-/// A time-dependent error should be taken at the time at which the compared quantity lives: the Euler-Cromer velocity
-/// after `n` steps belongs to the time `(n - 1/2) dt`, so it is compared after `advance((n - 0.5) * dt)`.
+/// A time-dependent error should be taken at the time at which the compared quantity lives: the Euler-Cromer
+/// velocity after `n` steps belongs to the time `(n - 1/2) dt`, so it is compared after
+/// `advance((n - 0.5) * dt)`.
 pub trait Reference {
     /// Prepares evaluation at `time`, s, at least 0.
     ///
-    /// Calling it twice with the same time changes nothing. A closed form only remembers the time; a converged
-    /// solution marches its solver, and starts again from 0 where `time` lies before the last one.
+    /// Calling it twice with the same time changes nothing. A closed form only remembers the time; a
+    /// converged solution marches its solver, and starts again from 0 where `time` lies before the last one.
     ///
     /// # Errors
-    /// [`ReferenceError::InvalidTime`] where `time` is negative or not finite; what else can go wrong is said by each
-    /// solution.
+    /// [`ReferenceError::InvalidTime`] where `time` is negative or not finite; what else can go wrong is said
+    /// by each solution.
     fn advance(&mut self, time: f64) -> Result<(), ReferenceError>;
 
-    /// State, at the time of the last [`advance`](Reference::advance), of the material point that was at `x0`, m, at
-    /// time 0. Before the first `advance` the time is 0.
+    /// State, at the time of the last [`advance`](Reference::advance), of the material point that was at
+    /// `x0`, m, at time 0. Before the first `advance` the time is 0.
     fn at(&self, x0: f64) -> State;
 }

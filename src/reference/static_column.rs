@@ -12,13 +12,15 @@ pub enum Strain {
     Large,
 }
 
-/// A column at rest under a uniform body force, fixed at its base and free at its top: exact, the same at all times.
+/// A column at rest under a uniform body force, fixed at its base and free at its top: exact, the same at all
+/// times.
 ///
 /// Equilibrium of a material point at the height `X` carries the mass above it, whatever the law:
 /// `sigma = rho b (H - X)` with the initial density. With `g = rho b / E`,
 ///
 /// * small strain, `u = g X (H - X/2)`;
-/// * large strain, `J = 1 / (1 - sigma/E)`, hence `u = ln(1 + g X / (1 - g H)) / g - X`, the integral of `J - 1`.
+/// * large strain, `J = 1 / (1 - sigma/E)`, hence `u = ln(1 + g X / (1 - g H)) / g - X`, the integral of
+///   `J - 1`.
 ///
 /// Source: the column compaction of doi 10.1002/nme.5956, which gives the stress; the displacement is ours.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,12 +34,13 @@ pub struct StaticColumn {
 }
 
 impl StaticColumn {
-    /// A column of `height`, m, `density`, kg/m3, and `youngs_modulus`, Pa, under the `body_force`, N/kg, which is
-    /// negative where it pulls towards the base; the base is at 0.
+    /// A column of `height`, m, `density`, kg/m3, and `youngs_modulus`, Pa, under the `body_force`, N/kg,
+    /// which is negative where it pulls towards the base; the base is at 0.
     ///
     /// # Errors
     /// Where a parameter is not finite, or height, density or Young's modulus not positive;
-    /// [`ReferenceError::NoEquilibrium`] where the column hangs, at large strain, under a weight of `E` or more.
+    /// [`ReferenceError::NoEquilibrium`] where the column hangs, at large strain, under a weight of `E` or
+    /// more.
     pub fn new(
         height: f64,
         density: f64,
@@ -84,8 +87,8 @@ impl StaticColumn {
         match self.strain {
             Strain::Small => gradient * height * (self.height - 0.5 * height),
             Strain::Large => {
-                // u = X (r(y) - 1 + g H) / (1 - g H) with y = g X / (1 - g H), r(y) = ln(1 + y) / y: the same as
-                // ln(1 + y)/g - X without the difference of near equals that a small g makes of that.
+                // u = X (r(y) - 1 + g H) / (1 - g H) with y = g X / (1 - g H), r(y) = ln(1 + y) / y: the same
+                // as ln(1 + y)/g - X without the difference of near equals that a small g makes of that.
                 let base = gradient * self.height;
                 let y = gradient * height / (1.0 - base);
                 height * (log_ratio_minus_one(y) + base) / (1.0 - base)
@@ -194,7 +197,8 @@ mod tests {
         assert_eq!(column.at(28.0).velocity, 0.0);
     }
 
-    /// Small strain settles by |g| H^2 / 2 = 0.25 m. Large strain settles by the integral of s / (1 - s), expanded:
+    /// Small strain settles by |g| H^2 / 2 = 0.25 m. Large strain settles by the integral of s / (1 - s),
+    /// expanded:
     /// |g| H^2 / 2 - |g|^2 H^3 / 3 + |g|^3 H^4 / 4 - ... The 0.249 m of the benchmark is that of the column in motion.
     #[test]
     fn top_settles_by_the_expansion_of_the_integral() {
@@ -208,8 +212,8 @@ mod tests {
         assert!((large + 0.248_35).abs() < 5e-6, "{large}");
     }
 
-    /// The first correction to small strain is -g^2 ((H^3 - (H - X)^3) / 3); at a load of 1e-9 E a formula that
-    /// cancels would be off by 1e-7.
+    /// The first correction to small strain is -g^2 ((H^3 - (H - X)^3) / 3); at a load of 1e-9 E a formula
+    /// that cancels would be off by 1e-7.
     #[test]
     fn large_strain_tends_to_small_without_cancellation() {
         let column = |strain| {

@@ -4,14 +4,14 @@ use super::{ReferenceError, check};
 
 /// An elastic law of one-dimensional motion, in which the lateral stretches stay 1.
 ///
-/// A cross-section then keeps its area, so that Cauchy and nominal stress are the same number. `J` is the stretch of a
-/// material fibre, `1 + du/dX`; it equals the volume ratio.
+/// A cross-section then keeps its area, so that Cauchy and nominal stress are the same number. `J` is the
+/// stretch of a material fibre, `1 + du/dX`; it equals the volume ratio.
 pub trait UniaxialLaw {
     /// Stress, Pa, at stretch `J`; zero at 1.
     fn stress(&self, stretch: f64) -> f64;
 
-    /// Tangent stiffness `d stress / dJ`, Pa. Waves need it positive: their speed, m/s in the reference configuration,
-    /// is `sqrt(stiffness / density)`.
+    /// Tangent stiffness `d stress / dJ`, Pa. Waves need it positive: their speed, m/s in the reference
+    /// configuration, is `sqrt(stiffness / density)`.
     fn stiffness(&self, stretch: f64) -> f64;
 }
 
@@ -25,7 +25,8 @@ pub trait Hyperelastic: UniaxialLaw {
 
 /// A law that says which stretch a stress belongs to.
 ///
-/// With soil, it is where consolidation under a load ends: the stretch at which the skeleton carries all of it.
+/// With soil, it is where consolidation under a load ends: the stretch at which the skeleton carries all of
+/// it.
 pub trait InvertibleLaw: UniaxialLaw {
     /// The stretch at `stress`, Pa.
     ///
@@ -65,9 +66,9 @@ impl InvertibleLaw for Linear {
 
 /// Hill's rate law integrated exactly, `sigma = E (1 - 1/J)`.
 ///
-/// The rate law `d sigma/dt = (E - sigma) dv/dx` is that of the large-strain benchmarks (doi 10.1002/nme.5956). With
-/// `dJ/dt = J dv/dx` it reads `d sigma/dJ = (E - sigma)/J`, whose solution from `sigma(1) = 0` this is. Tension stays
-/// below `E`; compression is unbounded.
+/// The rate law `d sigma/dt = (E - sigma) dv/dx` is that of the large-strain benchmarks (doi
+/// 10.1002/nme.5956). With `dJ/dt = J dv/dx` it reads `d sigma/dJ = (E - sigma)/J`, whose solution from
+/// `sigma(1) = 0` this is. Tension stays below `E`; compression is unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hill {
     /// Young's modulus, Pa.
@@ -108,8 +109,8 @@ impl InvertibleLaw for Hill {
 
 /// The logarithmic law `sigma = E ln J`.
 ///
-/// The law of soil in one-dimensional compression that the large-strain consolidation of K. H. Xie and C. J. Leo
-/// (Comput. Geotech. 31, 2004) belongs to. Its rate is `d sigma/dt = E dv/dx`.
+/// The law of soil in one-dimensional compression that the large-strain consolidation of K. H. Xie and C. J.
+/// Leo (Comput. Geotech. 31, 2004) belongs to. Its rate is `d sigma/dt = E dv/dx`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Logarithmic {
     /// Young's modulus (in one-dimensional strain, the constrained modulus), Pa.
@@ -141,8 +142,9 @@ impl InvertibleLaw for Logarithmic {
 
 /// The compressible neo-Hookean law, `sigma = lambda ln J / J + mu (J^2 - 1) / J`.
 ///
-/// Cauchy stress of `(lambda ln J / J) I + (mu / J) (F F^T - I)` along an axis whose lateral stretches are 1. For
-/// `lambda > 0` the stiffness falls in tension; it stays positive while `lambda (ln J - 1) < mu (J^2 + 1)`.
+/// Cauchy stress of `(lambda ln J / J) I + (mu / J) (F F^T - I)` along an axis whose lateral stretches are 1.
+/// For `lambda > 0` the stiffness falls in tension; it stays positive while
+/// `lambda (ln J - 1) < mu (J^2 + 1)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookean {
     /// First Lamé parameter, Pa.
@@ -209,7 +211,8 @@ mod tests {
         assert_consistent(&NeoHookean { lambda: 2e4, mu: 1e4 }, 4e4);
     }
 
-    /// The increments sigma += (E - sigma) d_eps of the method tend to the integral with first order in their size.
+    /// The increments sigma += (E - sigma) d_eps of the method tend to the integral with first order in their
+    /// size.
     #[test]
     fn hill_is_the_integral_of_its_rate() {
         let law = Hill { youngs_modulus: 4e4 };

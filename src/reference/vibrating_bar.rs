@@ -13,8 +13,9 @@ use super::{Reference, ReferenceError, State};
 /// * `v = v0 cos(w t) sin(pi X / L)`,
 /// * `sigma = v0 sqrt(E rho) sin(w t) cos(pi X / L)`,
 ///
-/// which solves `rho u_tt = E u_XX` from `u = 0`, `v = v0 sin(pi X / L)`. Source: doi 10.1002/nme.5956, vibrating bar;
-/// the amplitude of the stress is printed there with `sqrt(E / rho)`, which has not even the unit of a stress.
+/// which solves `rho u_tt = E u_XX` from `u = 0`, `v = v0 sin(pi X / L)`. Source: doi 10.1002/nme.5956,
+/// vibrating bar; the amplitude of the stress is printed there with `sqrt(E / rho)`, which has not even the
+/// unit of a stress.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VibratingBar {
     length: f64,
@@ -26,8 +27,8 @@ pub struct VibratingBar {
 }
 
 impl VibratingBar {
-    /// A bar of `length`, m, `density`, kg/m3, and `youngs_modulus`, Pa, with the largest initial `velocity`, m/s, in
-    /// its middle, and its left end at 0.
+    /// A bar of `length`, m, `density`, kg/m3, and `youngs_modulus`, Pa, with the largest initial `velocity`,
+    /// m/s, in its middle, and its left end at 0.
     ///
     /// # Errors
     /// Where a parameter is not finite, or length, density or Young's modulus not positive.

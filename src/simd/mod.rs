@@ -1,11 +1,11 @@
 //! Numbers computed side by side.
 //!
-//! A processor's vector unit adds or multiplies four `f64`, or eight `f32`, in the time of one. Compilers rarely
-//! find that out for the sums of a particle method, so sweeps are written once, generic in a *token*
+//! A processor's vector unit adds or multiplies four `f64`, or eight `f32`, in the time of one. Compilers
+//! rarely find that out for the sums of a particle method, so sweeps are written once, generic in a *token*
 //! ([`Lanes`], [`Packs`]) that makes *packs* of numbers: [`Plain`] makes them of any scalar, dual numbers for
-//! instance, [`One`] is a single number, and for `f64` and `f32` there are the vectors of the processor, whose
-//! token is a proof that the processor has them. It is asked for once a sweep, at run time ([`dispatch`]): no
-//! build flag is wanted of anyone.
+//! instance, [`One`] is a single number, and for `f64` and `f32` there are the vectors of the processor,
+//! whose token is a proof that the processor has them. It is asked for once a sweep, at run time
+//! ([`dispatch`]): no build flag is wanted of anyone.
 //!
 //! Everything inside a sweep must be inlined into it, closures too (`#[inline(always)] |a| ..`): what is not
 //! loses the instruction set, and with it a factor of three to six. [`each`] stands in for
@@ -94,7 +94,8 @@ pub(crate) fn each<A: Copy, const N: usize>(mut f: impl FnMut(usize) -> A) -> [A
     all
 }
 
-/// The same of numbers for a pack, which begins with zeros: of the first number in all places a compiler makes shuffles.
+/// The same of numbers for a pack, which begins with zeros: of the first number in all places a compiler
+/// makes shuffles.
 #[inline(always)]
 pub(crate) fn in_lanes<T: Scalar, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
     let mut all = [T::zero(); N];

@@ -53,7 +53,8 @@ fn eight_lanes_do_what_four_do() {
     );
 }
 
-/// What a run is given is computed with packs of the processor where it has them, and with plain ones elsewhere.
+/// What a run is given is computed with packs of the processor where it has them, and with plain ones
+/// elsewhere.
 #[test]
 fn a_sweep_gets_the_packs_of_its_scalar() {
     fn sum<T: Scalar>(values: [T; 4]) -> T {

@@ -23,8 +23,8 @@ pub(crate) fn is<A: 'static, B: 'static>() -> bool {
     TypeId::of::<A>() == TypeId::of::<B>()
 }
 
-/// The vectors of a processor are made of their own scalar only, and nobody but the macros below has a token for them:
-/// asked for another one they would panic.
+/// The vectors of a processor are made of their own scalar only, and nobody but the macros below has a token
+/// for them: asked for another one they would panic.
 #[cold]
 #[inline(never)]
 fn not_its_lanes<V, T>() -> ! {
@@ -239,8 +239,8 @@ pub(crate) fn processor() -> Option<Best> {
     None
 }
 
-/// Whether a scalar has no vectors on any processor, as its size and alignment tell a compiler. One that is laid out as `f64` or
-/// `f32` and is neither goes the way of those without vectors.
+/// Whether a scalar has no vectors on any processor, as its size and alignment tell a compiler. One that is
+/// laid out as `f64` or `f32` and is neither goes the way of those without vectors.
 pub(crate) const fn only_plain<T>() -> bool {
     !matches!((size_of::<T>(), align_of::<T>()), (8, 8) | (4, 4))
 }
@@ -258,8 +258,8 @@ pub(crate) fn no_packs() -> ! {
     panic!("no packs serve this scalar here")
 }
 
-/// Calls `f` in a function of its own with the instruction set that packs have: a loop there is made of vectors if
-/// a compiler finds that it can be.
+/// Calls `f` in a function of its own with the instruction set that packs have: a loop there is made of
+/// vectors if a compiler finds that it can be.
 #[inline(always)]
 pub(crate) fn with_features<R>(f: impl FnOnce() -> R) -> R {
     match processor() {
@@ -269,17 +269,17 @@ pub(crate) fn with_features<R>(f: impl FnOnce() -> R) -> R {
 }
 
 /// Evaluates an expression with a token for packs of the given scalar, four to a pack, in a function that has
-/// their instruction set. What the expression uses is moved: of references to it a compiler would not know that what is written
-/// leaves them alone. The size is asked first because the compiler knows it before it makes the code for the
-/// packs that are not wanted.
+/// their instruction set. What the expression uses is moved: of references to it a compiler would not know
+/// that what is written leaves them alone. The size is asked first because the compiler knows it before it
+/// makes the code for the packs that are not wanted.
 macro_rules! dispatch {
     ($scalar:ty, |$token:ident| $body:expr) => {
         $crate::simd::dispatch_with!($scalar, $token, $body, Singles, true)
     };
 }
 
-/// The same for what there is another way for: only asked where [`packs_serve`] the scalar, so that none are made of `f64` and
-/// `f32` on processors without vectors.
+/// The same for what there is another way for: only asked where [`packs_serve`] the scalar, so that none are
+/// made of `f64` and `f32` on processors without vectors.
 macro_rules! dispatch_vectors {
     ($scalar:ty, |$token:ident| $body:expr) => {
         $crate::simd::dispatch_with!(
@@ -292,7 +292,8 @@ macro_rules! dispatch_vectors {
     };
 }
 
-/// The latter with as many to a pack as suit particles of the given cells: eight `f32` where most come in eights.
+/// The latter with as many to a pack as suit particles of the given cells: eight `f32` where most come in
+/// eights.
 macro_rules! dispatch_for {
     ($scalar:ty, $eights:expr, |$token:ident| $body:expr) => {
         if const { size_of::<$scalar>() == 4 } && $eights {

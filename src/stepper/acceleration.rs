@@ -10,8 +10,8 @@ use crate::grid::Face;
 use crate::scalar::Scalar;
 use crate::simd::with_features;
 
-/// Turns forces into accelerations; a DOF that no particle reaches has none. Held components get the prescribed ones, and the
-/// forces that this takes are noted.
+/// Turns forces into accelerations; a DOF that no particle reaches has none. Held components get the
+/// prescribed ones, and the forces that this takes are noted.
 #[inline(never)]
 pub(super) fn accelerate<T: Scalar, const D: usize>(
     dofs: &mut Dofs<T, D>,
@@ -88,8 +88,8 @@ impl<'a, T: Scalar, const D: usize> Walls<'a, T, D> {
         }
     }
 
-    /// Calls `f(dof, axis, velocity, acceleration)` for every held component of the DOFs on held faces. Where faces
-    /// meet, the later one has the last word.
+    /// Calls `f(dof, axis, velocity, acceleration)` for every held component of the DOFs on held faces. Where
+    /// faces meet, the later one has the last word.
     #[inline(always)]
     pub(super) fn for_each_held(&self, mut f: impl FnMut(usize, usize, T, T)) {
         for (face, dofs) in Face::all::<D>().zip(self.face_dofs) {

@@ -31,7 +31,8 @@ impl<T: Scalar, const D: usize> Balance<T, D> {
         }
     }
 
-    /// No force yet in this step. The particles' momentum is summed before the first step; later it is known from the step before.
+    /// No force yet in this step. The particles' momentum is summed before the first step; later it is known
+    /// from the step before.
     pub(super) fn begin(&mut self, velocities: &[SVector<T, D>], masses: &[T]) {
         *self = Self {
             momentum: self.momentum,
@@ -66,7 +67,8 @@ impl<T: Scalar, const D: usize> Balance<T, D> {
         self.momentum = Some(after.momentum);
     }
 
-    /// Notes what `f + m b` gives to held components before accelerations are solved for with the particles' matrix.
+    /// Notes what `f + m b` gives to held components before accelerations are solved for with the particles'
+    /// matrix.
     pub(super) fn note_loads_on_held(&mut self, right: &[SVector<T, D>], walls: &Walls<'_, T, D>) {
         walls.for_each_held(|dof, axis, _, _| {
             // Beyond one axis a row of the matrix costs as much as a product with all of it.

@@ -2,23 +2,27 @@
 //!
 //! # The bound and its proof
 //!
-//! With lumped masses $M_i = \sum_p m_p\phi_i(x_p)$ a step of plain MPM (Shepard) maps particle velocities $v$ to the DOFs by
-//! $u_i = \sum_p m_p\phi_i(x_p) v_p / M_i$, strains the particles by $\sum_i u_i\otimes\nabla\phi_i$, and maps forces back by the
-//! transposes of both. So its map $G$ (see [`Stepper::critical_step`]) is symmetric in the scalar product of $m$, and
-//! $\langle v, G v\rangle_m = \sum_q V_q\,|\sum_i u_i\otimes g_{iq}|^2_C$ with $g_{iq} = \nabla\phi_i(x_q)$ and the law's tangent $C$.
+//! With lumped masses $M_i = \sum_p m_p\phi_i(x_p)$ a step of plain MPM (Shepard) maps particle velocities
+//! $v$ to the DOFs by $u_i = \sum_p m_p\phi_i(x_p) v_p / M_i$, strains the particles by $\sum_i
+//! u_i\otimes\nabla\phi_i$, and maps forces back by the transposes of both. So its map $G$ (see
+//! [`Stepper::critical_step`]) is symmetric in the scalar product of $m$, and $\langle v, G v\rangle_m =
+//! \sum_q V_q\,|\sum_i u_i\otimes g_{iq}|^2_C$ with $g_{iq} = \nabla\phi_i(x_q)$ and the law's tangent $C$.
 //!
-//! 1. *One function.* $|u\otimes g|_C \le c\sqrt\varrho\,|g||u|$: that is what the speed $c$ of the fastest wave means.
+//! 1. *One function.* $|u\otimes g|_C \le c\sqrt\varrho\,|g||u|$: that is what the speed $c$ of the fastest
+//!    wave means.
 //! 2. *One particle.* By the triangle inequality and Cauchy and Schwarz with the weights $|g_{iq}|$,
 //!    $V_q|\sum_i u_i\otimes g_{iq}|_C^2 \le m_q c_q^2 A_q\sum_i|g_{iq}||u_i|^2$, $A_q = \sum_i|g_{iq}|$.
-//! 3. *One DOF.* Summed over particles this is $\sum_i W_i|u_i|^2$ with $W_i = \sum_q m_q c_q^2 A_q|g_{iq}|$; and $u_i$ is a mean of
-//!    the $v_p$, so that $|u_i|^2 \le \sum_p m_p\phi_i(x_p)|v_p|^2/M_i$ (Jensen; this asks for $\phi_i\ge0$).
+//! 3. *One DOF.* Summed over particles this is $\sum_i W_i|u_i|^2$ with $W_i = \sum_q m_q c_q^2 A_q|g_{iq}|$;
+//!    and $u_i$ is a mean of the $v_p$, so that $|u_i|^2 \le \sum_p m_p\phi_i(x_p)|v_p|^2/M_i$ (Jensen; this
+//!    asks for $\phi_i\ge0$).
 //! 4. *Back at the particles:* $\langle v, G v\rangle_m \le \sum_p m_p|v_p|^2\sum_i\phi_i(x_p)W_i/M_i$, hence
 //!
 //! $$\lambda_{\max}(G) \le \max_p\sum_i\phi_i(x_p)\frac{W_i}{M_i} \le c^2\gamma.$$
 //!
-//! $\gamma$ (1/m2) is the same with $c = 1$: grid, basis and layout alone. Linear functions along one axis give the classical
-//! $4/h^2$, $\Delta t\le h/c$, for any layout of a full cell. A DOF that hardly any mass sees has a large $W_i/M_i$, but so
-//! small a $\phi_i$ at every particle that it counts no more than it does in the scheme. Held DOFs drop out of all sums.
+//! $\gamma$ (1/m2) is the same with $c = 1$: grid, basis and layout alone. Linear functions along one axis
+//! give the classical $4/h^2$, $\Delta t\le h/c$, for any layout of a full cell. A DOF that hardly any mass
+//! sees has a large $W_i/M_i$, but so small a $\phi_i$ at every particle that it counts no more than it does
+//! in the scheme. Held DOFs drop out of all sums.
 
 use nalgebra::SVector;
 
@@ -40,13 +44,14 @@ where
     L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
-    /// Bound (1/m2) of the largest eigenvalue of the scheme's inverse mass times stiffness for waves of 1 m/s, with the particles
-    /// where they are and the faces held that `forcing` holds: `4 / h^2` for linear functions in full cells along one axis. Two passes
-    /// over the particles, about a step's work. For [`Stepper::largest_step`].
+    /// Bound (1/m2) of the largest eigenvalue of the scheme's inverse mass times stiffness for waves of 1
+    /// m/s, with the particles where they are and the faces held that `forcing` holds: `4 / h^2` for linear
+    /// functions in full cells along one axis. Two passes over the particles, about a step's work. For
+    /// [`Stepper::largest_step`].
     ///
-    /// Proved for plain MPM ([`Shepard`](crate::reconstruction::Shepard)) with every basis of values that are not negative, on every
-    /// layout: `docs/verification/stability.md` has the proof. Of other reconstructions it bounds nothing:
-    /// [`Stepper::stiffness`].
+    /// Proved for plain MPM ([`Shepard`](crate::reconstruction::Shepard)) with every basis of values that are
+    /// not negative, on every layout: `docs/verification/stability.md` has the proof. Of other
+    /// reconstructions it bounds nothing: [`Stepper::stiffness`].
     pub fn stiffness_bound(&mut self, forcing: &Forcing<T, D>) -> T {
         self.prepare();
         let held = self.held_dofs(forcing);
@@ -75,7 +80,8 @@ where
         dofs
     }
 
-    /// `M_i` and `W_i` of every DOF, for waves of 1 m/s. With a liquid that flows of unit density, since its balances differ.
+    /// `M_i` and `W_i` of every DOF, for waves of 1 m/s. With a liquid that flows of unit density, since its
+    /// balances differ.
     fn sum_masses_and_slopes(&self, held: &[bool]) -> Vec<[T; 2]> {
         let (basis, grid) = (&self.basis, &self.grid);
         let weights = match P::FLOWS {
@@ -133,10 +139,11 @@ where
         largest.into_iter().fold(T::zero(), T::max)
     }
 
-    /// Largest step (s) of a layout with this `stiffness` (1/m2, of [`Stepper::stiffness`]) for the waves and velocities that
-    /// the particles have now: `1 / dt = c sqrt(stiffness) / 2 + max_a |v_a| / h_a` of the worst particle, so that neither a wave nor
-    /// a particle, nor a wave in moving material, gets further than the scheme's stencil in a step. For linear functions along one
-    /// axis that is the classical `dt = h / (c + |v|)`. With a liquid that flows also what its drag allows. `None` if there is no wave.
+    /// Largest step (s) of a layout with this `stiffness` (1/m2, of [`Stepper::stiffness`]) for the waves and
+    /// velocities that the particles have now: `1 / dt = c sqrt(stiffness) / 2 + max_a |v_a| / h_a` of the
+    /// worst particle, so that neither a wave nor a particle, nor a wave in moving material, gets further
+    /// than the scheme's stencil in a step. For linear functions along one axis that is the classical
+    /// `dt = h / (c + |v|)`. With a liquid that flows also what its drag allows. `None` if there is no wave.
     pub fn largest_step(&self, stiffness: T) -> Option<CriticalStep<T>> {
         let count = self.particles.len().div_ceil(PARTICLES);
         let mut found = vec![None; count];

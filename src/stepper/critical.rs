@@ -37,11 +37,11 @@ pub struct CriticalStep<T> {
 
 /// Strain by which the law's tangent is probed.
 const PROBE_STRAIN: f64 = 1e-3;
-/// Iterations over which the eigenvalue must settle. The change in one is no sign: a mode of a partly filled end cell, of
-/// which the start has little, grows unseen below the others for a while.
+/// Iterations over which the eigenvalue must settle. The change in one is no sign: a mode of a partly filled
+/// end cell, of which the start has little, grows unseen below the others for a while.
 const STRIDE: usize = 40;
-/// Share of `(c / h)^2`, `c` the wave speed, below which an eigenvalue is round-off: particles of which no two share a DOF
-/// that strains them.
+/// Share of `(c / h)^2`, `c` the wave speed, below which an eigenvalue is round-off: particles of which no
+/// two share a DOF that strains them.
 const ROUND_OFF: f64 = 1e-10;
 /// Relative change over a stride below which it has settled.
 const TOLERANCE: f64 = 1e-5;
@@ -65,8 +65,9 @@ where
     /// scheme's own stages, so it holds for every basis, reconstruction, mass, law and layout. `None` if
     /// nothing resists a motion (no stiffness).
     ///
-    /// With a liquid that flows the same iteration, with unit density and modulus, gives what grid, basis, reconstruction and
-    /// layout contribute, and the two-phase problem is solved with it for every particle's material; the least step counts.
+    /// With a liquid that flows the same iteration, with unit density and modulus, gives what grid, basis,
+    /// reconstruction and layout contribute, and the two-phase problem is solved with it for every particle's
+    /// material; the least step counts.
     pub fn critical_step(&self, forcing: &Forcing<T, D>) -> Option<CriticalStep<T>> {
         self.clone().into_critical_step(forcing)
     }
@@ -90,12 +91,13 @@ where
         })
     }
 
-    /// Stiffness (1/m2) of the layout for [`Stepper::largest_step`]: [`Stepper::stiffness_bound`] where that is proved, otherwise the
-    /// largest eigenvalue for waves of 1 m/s, by power iteration, of a sample of some thousand particles: those in the cells
-    /// about a corner of the bodies, or all where they are few. `None` if nothing resists a motion.
+    /// Stiffness (1/m2) of the layout for [`Stepper::largest_step`]: [`Stepper::stiffness_bound`] where that
+    /// is proved, otherwise the largest eigenvalue for waves of 1 m/s, by power iteration, of a sample of
+    /// some thousand particles: those in the cells about a corner of the bodies, or all where they are few.
+    /// `None` if nothing resists a motion.
     ///
-    /// Fits and consistent masses have no bound that is of use: a cell of which particles fill a part may be a hundred times
-    /// as stiff as a full one, or a mass matrix next to singular.
+    /// Fits and consistent masses have no bound that is of use: a cell of which particles fill a part may be
+    /// a hundred times as stiff as a full one, or a mass matrix next to singular.
     pub fn stiffness(&mut self, forcing: &Forcing<T, D>) -> Option<T> {
         if R::PLAIN {
             return Some(self.stiffness_bound(forcing));
@@ -130,7 +132,8 @@ where
         };
         let mut distances: Vec<u32> = cells.iter().map(distance).collect();
         let (_, &mut reach, _) = distances.select_nth_unstable(SAMPLE);
-        // Cells at the distance that is reached last come in whole or not at all, and the corner's own in any case.
+        // Cells at the distance that is reached last come in whole or not at all, and the corner's own in any
+        // case.
         let numbers: Vec<usize> = (0..cells.len())
             .filter(|&p| distance(&cells[p]) < reach.max(1))
             .collect();
@@ -165,7 +168,8 @@ where
         eigenvalue
     }
 
-    /// Largest eigenvalue of the map, `None` if it is nothing to a wave of the given `speed`; velocities and DOFs are used up.
+    /// Largest eigenvalue of the map, `None` if it is nothing to a wave of the given `speed`; velocities and
+    /// DOFs are used up.
     #[inline(never)]
     fn largest_eigenvalue(&mut self, forcing: &Forcing<T, D>, speed: T) -> Option<T> {
         let across = speed / self.grid.cell_size().min();
@@ -246,7 +250,8 @@ where
         eigenvalue.is_finite().then_some(eigenvalue)
     }
 
-    /// Change of a particle's total stress under the DOF velocities in one second; `state` is room for a state.
+    /// Change of a particle's total stress under the DOF velocities in one second; `state` is room for a
+    /// state.
     fn stress_rate(&self, p: usize, state: &mut Vec<L::Number>) -> SMatrix<T, D, D> {
         let particles = &self.particles;
         let mut gradient = SMatrix::<T, D, D>::zeros();
@@ -285,8 +290,8 @@ where
         speeds.fold(T::zero(), T::max)
     }
 
-    /// Speed (m/s) of the fastest wave at particle `p`, of the law and, unless a liquid flows, with what the phase adds to its
-    /// stiffness.
+    /// Speed (m/s) of the fastest wave at particle `p`, of the law and, unless a liquid flows, with what the
+    /// phase adds to its stiffness.
     pub(super) fn wave_speed(&self, p: usize) -> T {
         let particles = &self.particles;
         let density = particles.mass[p] / particles.volume[p];
@@ -300,7 +305,8 @@ where
             .sqrt()
     }
 
-    /// How much a phase that does not flow adds to the modulus (Pa) of a wave along the stiffest axis, by a small strain.
+    /// How much a phase that does not flow adds to the modulus (Pa) of a wave along the stiffest axis, by a
+    /// small strain.
     pub(super) fn phase_stiffness(&self, p: usize) -> T {
         let (phase, data) = (&self.phase, &self.particles.phase[p]);
         let (strain, nothing) = (T::lit(PROBE_STRAIN), SMatrix::zeros());

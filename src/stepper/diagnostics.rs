@@ -22,10 +22,10 @@ pub struct Conservation<T> {
     pub momentum: T,
     /// Of momentum, relative to `sum m |v|`.
     pub momentum_scaled: T,
-    /// Of the change of the particles' momentum in a step against the impulse of all that acts from outside (body forces,
-    /// tractions, held faces, walls that rub), relative to `sum m |v|` and the sizes of these impulses. Not measured with a liquid that
-    /// flows; beyond one axis the forces of held faces are not known with the particles' consistent mass, and the
-    /// components that they hold are left out.
+    /// Of the change of the particles' momentum in a step against the impulse of all that acts from outside
+    /// (body forces, tractions, held faces, walls that rub), relative to `sum m |v|` and the sizes of these
+    /// impulses. Not measured with a liquid that flows; beyond one axis the forces of held faces are not
+    /// known with the particles' consistent mass, and the components that they hold are left out.
     pub impulse: T,
 }
 
@@ -44,10 +44,11 @@ pub struct Diagnostics<T> {
     pub virtual_cells: usize,
     /// Mass of all particles.
     pub total_mass: T,
-    /// Work of walls that rub on the particles (J), since the start: of their impulses with the velocities after them.
+    /// Work of walls that rub on the particles (J), since the start: of their impulses with the velocities
+    /// after them.
     pub wall_work: T,
-    /// Most work (J) in one step of their impulses with velocities relative to them, zero if it never was positive: walls
-    /// at rest only take energy.
+    /// Most work (J) in one step of their impulses with velocities relative to them, zero if it never was
+    /// positive: walls at rest only take energy.
     pub wall_gain: T,
     /// Steps in which the impulses of walls were not found within the tolerance.
     pub unsolved_contacts: usize,
@@ -55,10 +56,11 @@ pub struct Diagnostics<T> {
 
 /// Energy of the particles (1-D: J/m2, 2-D: J/m, 3-D: J).
 ///
-/// Velocities live half a step beside positions. Of particles as they are ([`Stepper::energy`]) the kinetic energy is that of half
-/// a step before the strain energy, and their sum swings by parts of a per cent to several although nothing is gained or lost.
-/// A step tells both at its start ([`Stepper::step_and_measure`]): the kinetic energy is then $\sum m\,v_-\cdot v_+/2$ with the
-/// velocities half a step before and after, and the sum is the energy that Euler-Cromer keeps for linear laws to
+/// Velocities live half a step beside positions. Of particles as they are ([`Stepper::energy`]) the kinetic
+/// energy is that of half a step before the strain energy, and their sum swings by parts of a per cent to
+/// several although nothing is gained or lost. A step tells both at its start
+/// ([`Stepper::step_and_measure`]): the kinetic energy is then $\sum m\,v_-\cdot v_+/2$ with the velocities
+/// half a step before and after, and the sum is the energy that Euler-Cromer keeps for linear laws to
 /// round-off (Hairer, Lubich & Wanner 2006, "Geometric numerical integration", I.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Energy<T> {
@@ -124,7 +126,8 @@ impl<T: Scalar> Diagnostics<T> {
         self.unsolved_contacts += usize::from(!action.solved);
     }
 
-    /// Compares the mapped totals of the solid, and of the liquid where one flows, with those of the particles.
+    /// Compares the mapped totals of the solid, and of the liquid where one flows, with those of the
+    /// particles.
     pub(super) fn record<const D: usize>(
         &mut self,
         totals: &Totals<T, D>,
@@ -171,8 +174,8 @@ where
     L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
-    /// Kinetic and strain energy of the particles as they are, the liquid's included: the kinetic one half a step earlier than the
-    /// strain energy. [`Stepper::step_and_measure`] has both at one time.
+    /// Kinetic and strain energy of the particles as they are, the liquid's included: the kinetic one half a
+    /// step earlier than the strain energy. [`Stepper::step_and_measure`] has both at one time.
     pub fn energy(&self) -> Energy<T> {
         let particles = &self.particles;
         let mut kinetic = T::zero();

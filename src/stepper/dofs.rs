@@ -21,8 +21,8 @@ pub(super) enum MassModel {
     FittedLumped,
     /// The consistent matrix of fitted masses; held DOFs are overwritten or, if told so, eliminated.
     FittedMatrix { constrained: bool },
-    /// The particles' consistent matrix, held DOFs eliminated: overwritten walls would tear at an acceleration that knows
-    /// nothing of them.
+    /// The particles' consistent matrix, held DOFs eliminated: overwritten walls would tear at an
+    /// acceleration that knows nothing of them.
     ParticleMatrix,
 }
 

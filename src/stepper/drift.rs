@@ -60,7 +60,8 @@ pub(super) fn move_particles<T, const D: usize, B, L, P, const C: usize>(
     });
 }
 
-/// What became of a span's particles, the first of which has the number `first`. Of particles at fault the first one is told.
+/// What became of a span's particles, the first of which has the number `first`. Of particles at fault the
+/// first one is told.
 fn moved<T>(first: usize, outcome: &Outcome, flaw: Option<(usize, InvalidState<T>)>) -> Moved<T> {
     let fault = match (flaw, outcome.left) {
         (Some((p, flaw)), left) if left.is_none_or(|left| p <= left) => {
@@ -75,8 +76,8 @@ fn moved<T>(first: usize, outcome: &Outcome, flaw: Option<(usize, InvalidState<T
     }
 }
 
-/// Deforms particles; returns the first one whose volume is no longer a positive number, whose stress the law does
-/// not know or whose liquid has no pressure any more.
+/// Deforms particles; returns the first one whose volume is no longer a positive number, whose stress the law
+/// does not know or whose liquid has no pressure any more.
 fn deform<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>, const C: usize>(
     matter: &Matter<'_, L, P>,
     dt: T,
@@ -104,7 +105,8 @@ fn deform<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>, const C:
     first_invalid_state(law, phase, &material)
 }
 
-// A function of its own, because a compiler knows of what a function is given that slices are apart from each other.
+// A function of its own, because a compiler knows of what a function is given that slices are apart from each
+// other.
 
 /// Lets volumes follow the increments; whether all are still sound.
 fn stretch<T: Scalar, const D: usize>(increments: &[SMatrix<T, D, D>], volumes: &mut [T]) -> bool {

@@ -1,7 +1,7 @@
 //! P2G from fits: forces, and masses and momenta of the DOFs, from polynomials fitted in each cell.
 //!
-//! Cells are fitted and integrated four at a time where reconstruction and basis can ([`transfer::fit`]), else streamed
-//! point by point: cell by cell where threads may share them, in one go otherwise.
+//! Cells are fitted and integrated four at a time where reconstruction and basis can ([`transfer::fit`]),
+//! else streamed point by point: cell by cell where threads may share them, in one go otherwise.
 
 use nalgebra::SVector;
 
@@ -31,7 +31,8 @@ pub(super) struct Fitted<'a, 'c, T: Scalar, const D: usize, B, R> {
 }
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> Fitted<'_, '_, T, D, B, R> {
-    /// `f_i = -integral(sigma grad phi_i)` of the stress, or of total stress and pressure, given at each particle.
+    /// `f_i = -integral(sigma grad phi_i)` of the stress, or of total stress and pressure, given at each
+    /// particle.
     pub(super) fn forces<const G: usize>(
         self,
         stress: impl Values<T, <Stress as Integrand<T, D, 0, 0, G, 0>>::Field> + Copy + Sync,
@@ -43,7 +44,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         self.integrate::<Stress, 0, 0, G>(&stress, targets);
     }
 
-    /// Masses and momenta of one phase or two, to row sums; `S` of the masses, zero where they are known already.
+    /// Masses and momenta of one phase or two, to row sums; `S` of the masses, zero where they are known
+    /// already.
     pub(super) fn lumped<Q: Field<T>, const S: usize, const C: usize>(
         self,
         densities: impl Values<T, Q> + Copy + Sync,

@@ -14,10 +14,10 @@ use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::transfer::{for_values, sum_pairs, sums_apply};
 
-/// In one dimension: share of its mass that a DOF's diagonal must hold to be solved for with its neighbours. The share is the mean value of
-/// its function over the particles: 2/3 in a full linear cell, nothing for a DOF that the first particle of a free end has
-/// just come to see. Such a DOF would have to carry that particle's whole acceleration, one over the function's value
-/// times as large, or round-off so magnified.
+/// In one dimension: share of its mass that a DOF's diagonal must hold to be solved for with its neighbours.
+/// The share is the mean value of its function over the particles: 2/3 in a full linear cell, nothing for a
+/// DOF that the first particle of a free end has just come to see. Such a DOF would have to carry that
+/// particle's whole acceleration, one over the function's value times as large, or round-off so magnified.
 pub(super) const WEAK: f64 = 0.3;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
@@ -28,8 +28,8 @@ where
     L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
-    /// `M_ij = sum_p m_p phi_i phi_j`, weak DOFs lumped or, beyond one dimension, tied; of both phases and the drag with a liquid
-    /// that flows.
+    /// `M_ij = sum_p m_p phi_i phi_j`, weak DOFs lumped or, beyond one dimension, tied; of both phases and
+    /// the drag with a liquid that flows.
     pub(super) fn assemble_matrices(&mut self) {
         if P::FLOWS {
             self.assemble_joint_matrices();

@@ -20,13 +20,14 @@ pub enum FaceCondition<T, const D: usize> {
         /// Acceleration (m/s2) at the step's start.
         acceleration: SVector<T, D>,
     },
-    /// A wall at the grid's face that nothing passes, that does not hold what moves away from it, and along which material slides
-    /// with Coulomb's friction. For the solid of one phase; a step of a phase whose liquid flows refuses it.
+    /// A wall at the grid's face that nothing passes, that does not hold what moves away from it, and along
+    /// which material slides with Coulomb's friction. For the solid of one phase; a step of a phase whose
+    /// liquid flows refuses it.
     Frictional {
         /// Coefficient of friction, not negative; 0 is a smooth wall.
         coefficient: T,
-        /// Velocity of the wall (m/s). Its place stays the grid's face: a wall may run along itself, or push by a small part of
-        /// a cell.
+        /// Velocity of the wall (m/s). Its place stays the grid's face: a wall may run along itself, or push
+        /// by a small part of a cell.
         velocity: SVector<T, D>,
     },
     /// Force per area (Pa) on the bodies' surface that looks towards the face ([`SurfacePoint`]).
@@ -48,7 +49,8 @@ impl<T: Scalar, const D: usize> FaceCondition<T, D> {
         }
     }
 
-    /// A wall at rest that nothing passes, that lets go, and along which material slides with this coefficient of friction.
+    /// A wall at rest that nothing passes, that lets go, and along which material slides with this
+    /// coefficient of friction.
     pub fn frictional(coefficient: T) -> Self {
         Self::Frictional {
             coefficient,
@@ -73,7 +75,8 @@ pub enum PoreCondition<T> {
     /// It does not pass: at a held face it moves as the face does, at a body's surface as the solid there.
     #[default]
     Sealed,
-    /// It passes freely; this is the pressure outside (Pa, tension positive), 0 where it drains into the open.
+    /// It passes freely; this is the pressure outside (Pa, tension positive), 0 where it drains into the
+    /// open.
     Pressure(T),
 }
 
@@ -180,8 +183,9 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
 
 /// A particle at a body's surface: it passes tractions and pore pressures on and moves with the material.
 ///
-/// The surface lies `reach` of the particle's current length `volume / area` beyond its position, but within the particle's
-/// cell: beyond it no mass would feel a load. In one dimension it also cuts the cell that a fit covers.
+/// The surface lies `reach` of the particle's current length `volume / area` beyond its position, but within
+/// the particle's cell: beyond it no mass would feel a load. In one dimension it also cuts the cell that a
+/// fit covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint<T> {
     /// Index of the particle.
@@ -266,7 +270,8 @@ mod tests {
     use super::*;
     use nalgebra::vector;
 
-    /// Half the particle's current length beyond its position, on the side it looks to, and never beyond its cell.
+    /// Half the particle's current length beyond its position, on the side it looks to, and never beyond its
+    /// cell.
     #[test]
     fn a_surface_lies_half_a_particle_beyond_it_and_follows_its_length() {
         let grid = Grid::new(vector![0.0, 0.0], vector![1.0, 1.0], [4, 4]).unwrap();

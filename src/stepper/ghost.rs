@@ -10,8 +10,9 @@ use crate::phase::Phase;
 use crate::reconstruction::{Filling, Reconstruction};
 use crate::scalar::Scalar;
 
-/// Strength of the tie, as a share of what the jump would change the kinetic energy of a full cell by. Between 0.2 and 1 the energy
-/// of a spinning disc does not differ; weaker ones bear free sides for a shorter time, stronger ones take more iterations.
+/// Strength of the tie, as a share of what the jump would change the kinetic energy of a full cell by.
+/// Between 0.2 and 1 the energy of a spinning disc does not differ; weaker ones bear free sides for a shorter
+/// time, stronger ones take more iterations.
 const SHARE: f64 = 0.3;
 
 impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
@@ -22,7 +23,8 @@ where
     L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
-    /// Puts a penalty on the jumps across those faces between occupied cells at which one of them is not full, beyond one dimension.
+    /// Puts a penalty on the jumps across those faces between occupied cells at which one of them is not
+    /// full, beyond one dimension.
     pub(super) fn tie_partly_filled_cells(&mut self) {
         let (grid, bins, reconstruction) = (&self.grid, &self.bins, &self.reconstruction);
         let is_full = |place: usize| reconstruction.filling(place) == Filling::Filled;
@@ -42,8 +44,8 @@ where
     }
 }
 
-/// Lumps the masses of cells that nothing determines: drops, splinters, bodies with one particle a cell. A matrix that particles do
-/// not determine has no inverse, and no tie helps where the next cells know no more.
+/// Lumps the masses of cells that nothing determines: drops, splinters, bodies with one particle a cell. A
+/// matrix that particles do not determine has no inverse, and no tie helps where the next cells know no more.
 pub(super) fn lump_undetermined_cells<T, const D: usize, B, R>(
     (basis, grid, bins): (&B, &Grid<T, D>, &Bins<D>),
     reconstruction: &R,
@@ -61,9 +63,9 @@ pub(super) fn lump_undetermined_cells<T, const D: usize, B, R>(
     }
 }
 
-/// Weight of a jump `[h^p d^p u]` over the mass of a cell. The next cell's polynomial, continued, differs from the own one by
-/// `[h^p d^p u] s^p / p!`, `s` from 0 to 1, whose mean square is `[...]^2 / ((2 p + 1) (p!)^2)`; there are `p + 1` functions along
-/// each axis of the face.
+/// Weight of a jump `[h^p d^p u]` over the mass of a cell. The next cell's polynomial, continued, differs
+/// from the own one by `[h^p d^p u] s^p / p!`, `s` from 0 to 1, whose mean square is
+/// `[...]^2 / ((2 p + 1) (p!)^2)`; there are `p + 1` functions along each axis of the face.
 fn share<T: Scalar, const D: usize>(degree: usize) -> T {
     let factorial: f64 = (1..=degree).map(|k| k as f64).product();
     let mean_square = 1.0 / ((2 * degree + 1) as f64 * factorial * factorial);

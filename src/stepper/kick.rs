@@ -95,8 +95,8 @@ impl<T: Scalar, const D: usize, P: Phase<T, D>> Velocities<'_, T, D, P> {
     }
 }
 
-/// `v_p += dt sum_i phi_i(x_p) a_i` of `C` phases and, of the first `M` of them, the momenta of the DOFs from the
-/// particles' new ones; returns the particles' totals.
+/// `v_p += dt sum_i phi_i(x_p) a_i` of `C` phases and, of the first `M` of them, the momenta of the DOFs from
+/// the particles' new ones; returns the particles' totals.
 #[inline(never)]
 pub(super) fn kick_particles<T, const D: usize, B, N, P, const C: usize, const M: usize>(
     (basis, grid, bins): (&B, &Grid<T, D>, &Bins<D>),

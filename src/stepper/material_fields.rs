@@ -11,7 +11,8 @@ use crate::scalar::Scalar;
 /// array is empty where the law does not know it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MaterialFields {
-    /// Stress (Pa) along the axes that the grid does not have; see [`crate::law::ConstitutiveLaw::off_plane_stress`].
+    /// Stress (Pa) along the axes that the grid does not have; see
+    /// [`crate::law::ConstitutiveLaw::off_plane_stress`].
     pub off_plane_stress: Vec<f64>,
     /// Accumulated plastic strain; see [`crate::law::ConstitutiveLaw::plastic_strain`].
     pub plastic_strain: Vec<f64>,

@@ -18,8 +18,8 @@ pub(super) enum Unknown {
     Velocity,
 }
 
-/// In one dimension a band that is factorised, beyond the diagonals of a lattice that are iterated with: there a band
-/// would hold whole rows of the lattice.
+/// In one dimension a band that is factorised, beyond the diagonals of a lattice that are iterated with:
+/// there a band would hold whole rows of the lattice.
 #[derive(Clone, Debug)]
 pub(super) struct MassMatrix<T, const D: usize> {
     band: Banded<T>,
@@ -113,8 +113,8 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
         }
     }
 
-    /// Takes the sums as complete. In one dimension rows whose diagonal holds less than the share `weak` of their sum are
-    /// lumped, if told so.
+    /// Takes the sums as complete. In one dimension rows whose diagonal holds less than the share `weak` of
+    /// their sum are lumped, if told so.
     #[inline(never)]
     pub(super) fn complete(&mut self, weak: Option<T>) {
         if D > 1 {
@@ -143,8 +143,9 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
 }
 
 impl<T: Scalar, const D: usize> Dofs<T, D> {
-    /// `M x = right`. Out of line: it knows neither basis nor law. The held DOFs are eliminated if they are constraints; they may differ from axis to axis. `pick` says
-    /// which of their told velocity and acceleration counts. Without `fresh` the matrix is the one of the last call.
+    /// `M x = right`. Out of line: it knows neither basis nor law. The held DOFs are eliminated if they are
+    /// constraints; they may differ from axis to axis. `pick` says which of their told velocity and
+    /// acceleration counts. Without `fresh` the matrix is the one of the last call.
     #[inline(never)]
     pub(super) fn solve(
         &mut self,

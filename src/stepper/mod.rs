@@ -2,17 +2,20 @@
 //!
 #![doc = include_str!("../../docs/formulas.html")]
 //!
-//! Euler-Cromer with modified update stress last (MUSL, Sulsky, Zhou & Schreyer 1995). The list of stages is in `step`, and
-//! each stage in the file of its name:
+//! Euler-Cromer with modified update stress last (MUSL, Sulsky, Zhou & Schreyer 1995). The list of stages is
+//! in `step`, and each stage in the file of its name:
 //!
-//! 1. `sums`, `fitted`: P2G of $m_i = \sum_p m_p\phi_i(x_p)$ and $f_i = -\int\sigma\nabla\phi_i + \text{traction}$;
+//! 1. `sums`, `fitted`: P2G of $m_i = \sum_p m_p\phi_i(x_p)$ and $f_i = -\int\sigma\nabla\phi_i +
+//!    \text{traction}$;
 //! 2. `acceleration`: $a_i = f_i/m_i + b$, the prescribed (Dirichlet) value on constrained DOFs;
-//! 3. `kick`: G2P of $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p) a_i$, the FLIP update, then P2G of the particles' new momenta;
+//! 3. `kick`: G2P of $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p) a_i$, the FLIP update, then P2G of the
+//!    particles' new momenta;
 //! 4. `velocity`: DOF velocities from these, and the impulses of walls that rub (`contact`);
-//! 5. `drift`: G2P of position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$, stress by the law,
-//!    volume by $\det(1+\Delta\varepsilon)$ at large strain.
+//! 5. `drift`: G2P of position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$,
+//!    stress by the law, volume by $\det(1+\Delta\varepsilon)$ at large strain.
 //!
-//! With a liquid that flows through the pores the same stages take both phases together (`liquid` has the second balance).
+//! With a liquid that flows through the pores the same stages take both phases together (`liquid` has the
+//! second balance).
 //!
 //! Basis values of all stages are taken at the positions at the start of the step. Velocity lives half a step
 //! early: started from $v(0)$, after $n$ steps it approximates $v(n\Delta t - \Delta t/2)$, to first order
@@ -96,8 +99,9 @@ where
     pub velocity_mass: VelocityMass,
     /// Particles in their initial state.
     pub particles: Particles<T, D, L::Number, P::Particle>,
-    /// Particles at the surfaces that carry tractions or, with a liquid in the pores, pressures: there, every surface of
-    /// a body that is not held. So too along one axis with any reconstruction but those by particle sums: fits end there.
+    /// Particles at the surfaces that carry tractions or, with a liquid in the pores, pressures: there, every
+    /// surface of a body that is not held. So too along one axis with any reconstruction but those by
+    /// particle sums: fits end there.
     pub surface: Vec<SurfacePoint<T>>,
 }
 
@@ -165,9 +169,10 @@ where
     /// Checks particles and phase and allocates all that steps will need.
     ///
     /// # Errors
-    /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside the grid, a constant of the phase makes no
-    /// sense, or beyond one axis the reconstruction is of one phase only or wants a basis that is one polynomial of its degree in each
-    /// cell ([`Reconstruction::PARTICLE_MATRIX`]).
+    /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside
+    /// the grid, a constant of the phase makes no sense, or beyond one axis the reconstruction is of one
+    /// phase only or wants a basis that is one polynomial of its degree in each cell
+    /// ([`Reconstruction::PARTICLE_MATRIX`]).
     pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
         const {
             crate::basis::constants_agree::<T, D, B>();
@@ -282,8 +287,8 @@ where
         (self.face_dofs, self.left_out) = faces::face_dofs(basis, grid);
     }
 
-    /// Lets reconstruction and basis see the particles and stream the widest values once, so that all they allocate is there
-    /// before the first step: [`Stepper::bytes`] is right from the start.
+    /// Lets reconstruction and basis see the particles and stream the widest values once, so that all they
+    /// allocate is there before the first step: [`Stepper::bytes`] is right from the start.
     fn allocate(&mut self) {
         self.prepare();
         let dofs = self.dofs.mass.len();
@@ -307,8 +312,9 @@ where
 
     /// One step of size `dt` (s) under `forcing`, the loads and boundary values of this step.
     ///
-    /// With the feature `rayon` threads share a step of many particles or cells: those of the caller's pool, or of the
-    /// global one, to which a caller that belongs to none sends the whole step. Any number of them gives the bits of one.
+    /// With the feature `rayon` threads share a step of many particles or cells: those of the caller's pool,
+    /// or of the global one, to which a caller that belongs to none sends the whole step. Any number of them
+    /// gives the bits of one.
     ///
     /// # Errors
     /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the
@@ -333,7 +339,8 @@ where
         self.send_step([kick, dt], forcing, false).map(|_| ())
     }
 
-    /// The same, and the energy at the step's start: see [`Energy`]. Takes memory for the velocities before the step.
+    /// The same, and the energy at the step's start: see [`Energy`]. Takes memory for the velocities before
+    /// the step.
     ///
     /// # Errors
     /// As those of [`Stepper::step_with_kick`].
@@ -346,7 +353,8 @@ where
         self.send_step([kick, dt], forcing, true)
     }
 
-    /// Takes a step in the pool of threads if it is worth that; the energy means nothing unless it is to be measured.
+    /// Takes a step in the pool of threads if it is worth that; the energy means nothing unless it is to be
+    /// measured.
     fn send_step(
         &mut self,
         [kick, dt]: [T; 2],
@@ -478,10 +486,10 @@ where
         &self.particles
     }
 
-    /// For each of [`Stepper::particles`] its number in the order in which the [`Setup`] gave them; `None` while that is the
-    /// order. In two and three dimensions particles are put in the order of their cells, at the start and again as they move,
-    /// in one dimension only where they start without any. [`Simulation::particles`] gives them back in their first order, and
-    /// errors name their first numbers.
+    /// For each of [`Stepper::particles`] its number in the order in which the [`Setup`] gave them; `None`
+    /// while that is the order. In two and three dimensions particles are put in the order of their cells, at
+    /// the start and again as they move, in one dimension only where they start without any.
+    /// [`Simulation::particles`] gives them back in their first order, and errors name their first numbers.
     pub fn numbers(&self) -> Option<&[u32]> {
         self.order.numbers()
     }
@@ -521,9 +529,10 @@ where
         &self.diagnostics
     }
 
-    /// Bytes of the stepper and of all that it allocates: particles, their cells, what basis and reconstruction hold, DOFs. Steps
-    /// allocate nothing beyond, but the first one in which walls rub that did not before, and where particles move so far through
-    /// a large grid that its [`Window`](crate::grid::Window) moves with them.
+    /// Bytes of the stepper and of all that it allocates: particles, their cells, what basis and
+    /// reconstruction hold, DOFs. Steps allocate nothing beyond, but the first one in which walls rub that
+    /// did not before, and where particles move so far through a large grid that its
+    /// [`Window`](crate::grid::Window) moves with them.
     pub fn bytes(&self) -> usize {
         size_of::<Self>()
             + self.particles.bytes()
@@ -569,7 +578,8 @@ fn refuse_unknown_stress<T: Scalar, const D: usize, L: LawSweep<T, D>, P>(
     }
 }
 
-/// The particles as a reconstruction sees them. A function of the parts, so that the rest of a stepper stays free to change.
+/// The particles as a reconstruction sees them. A function of the parts, so that the rest of a stepper stays
+/// free to change.
 fn cloud<'a, T: Scalar, const D: usize, S, P>(
     grid: &'a Grid<T, D>,
     bins: &'a Bins<D>,

@@ -1,9 +1,9 @@
 //! Particles cell after cell in memory.
 //!
-//! Passes over particles are fast where the particles of a cell follow each other: they share its DOFs, and four of them are
-//! computed with at once. In two and three dimensions particles are therefore put in the order of their cells at the start,
-//! and again after enough of them have changed their cells. In one dimension they usually come in order and stay so; there
-//! only a start without any order is mended.
+//! Passes over particles are fast where the particles of a cell follow each other: they share its DOFs, and
+//! four of them are computed with at once. In two and three dimensions particles are therefore put in the
+//! order of their cells at the start, and again after enough of them have changed their cells. In one
+//! dimension they usually come in order and stay so; there only a start without any order is mended.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -11,7 +11,8 @@ use crate::grid::{Cell, Grid};
 use crate::particles::Particles;
 use crate::scalar::Scalar;
 
-/// One particle in so many must have changed its cell before all are put in order again: that takes about as long as one step.
+/// One particle in so many must have changed its cell before all are put in order again: that takes about as
+/// long as one step.
 const CHANGED: usize = 16;
 /// One in so many that come before their predecessor's cell make a line of particles one without order.
 const BACKWARD: usize = 8;
@@ -19,7 +20,8 @@ const BACKWARD: usize = 8;
 /// Which particle is where.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Order {
-    /// Number, in the order they were given in, of the particle at each place; empty where they stay in that order.
+    /// Number, in the order they were given in, of the particle at each place; empty where they stay in that
+    /// order.
     pub(super) numbers: Vec<u32>,
     /// The place that each particle is to go to.
     targets: Vec<u32>,
@@ -63,8 +65,9 @@ impl Order {
         !self.numbers.is_empty() && self.crossings * CHANGED >= self.numbers.len()
     }
 
-    /// Puts the particles in the order of their cells; those of a cell stay in the order in which they are, and their
-    /// states take so many numbers each. Returns whether any has moved; if so, `moves` was told the place that each is at now.
+    /// Puts the particles in the order of their cells; those of a cell stay in the order in which they are,
+    /// and their states take so many numbers each. Returns whether any has moved; if so, `moves` was told the
+    /// place that each is at now.
     #[inline(never)]
     pub(super) fn restore<T: Scalar, const D: usize, S: Copy, P: Copy>(
         &mut self,
@@ -102,7 +105,8 @@ impl Order {
         true
     }
 
-    /// Number, in the order they were given in, of the particle at each place; `None` if they still are in that order.
+    /// Number, in the order they were given in, of the particle at each place; `None` if they still are in
+    /// that order.
     pub(super) fn numbers(&self) -> Option<&[u32]> {
         self.moved.then_some(&self.numbers[..])
     }
@@ -160,7 +164,8 @@ impl<T: Scalar, const D: usize, S: Copy, P: Copy> Particles<T, D, S, P> {
         self.phase.swap(a, b);
     }
 
-    /// Puts particles with the given `numbers` and a state each in the order of the numbers, which are used up.
+    /// Puts particles with the given `numbers` and a state each in the order of the numbers, which are used
+    /// up.
     #[inline(never)]
     pub(super) fn put_back(&mut self, numbers: Option<Vec<u32>>) {
         permute(&mut numbers.unwrap_or_default(), |a, b| self.swap(a, b, 1));

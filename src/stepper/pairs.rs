@@ -4,11 +4,12 @@ use super::matrix::MassMatrix;
 use crate::grid::Cell;
 use crate::scalar::Scalar;
 
-/// Most DOFs that a particle sees with the bases of this crate: four along each axis in three dimensions. Others may be
-/// told of more, in the first step.
+/// Most DOFs that a particle sees with the bases of this crate: four along each axis in three dimensions.
+/// Others may be told of more, in the first step.
 const MOST_SEEN: usize = 64;
 
-/// What the particles, or the quadrature points, of one cell add to a mass matrix. All see the same DOFs in the same order.
+/// What the particles, or the quadrature points, of one cell add to a mass matrix. All see the same DOFs in
+/// the same order.
 #[derive(Clone, Debug)]
 pub(super) struct Pairs<T, const D: usize> {
     cell: Option<Cell<D>>,

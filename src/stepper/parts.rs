@@ -34,8 +34,8 @@ where
         &self.phase
     }
 
-    /// Lets `edit` write particle data between two steps, in the order of [`Stepper::particles`]: velocities that a controller
-    /// sets, a wall that heats. Their number stays. Costs a copy of the particles.
+    /// Lets `edit` write particle data between two steps, in the order of [`Stepper::particles`]: velocities
+    /// that a controller sets, a wall that heats. Their number stays. Costs a copy of the particles.
     ///
     /// # Errors
     /// As those of [`Stepper::new`] for particles; they are then as they were.
@@ -85,8 +85,8 @@ where
         Ok(())
     }
 
-    /// What a new stepper can be made of that goes on from here, with the particles in the order in which they were given.
-    /// Time, steps and diagnostics begin anew.
+    /// What a new stepper can be made of that goes on from here, with the particles in the order in which
+    /// they were given. Time, steps and diagnostics begin anew.
     pub fn into_setup(self) -> Setup<T, D, B, R, L, P> {
         let Self {
             grid,

@@ -7,15 +7,17 @@ use crate::error::SetupError;
 use crate::grid::{Cell, Grid};
 use crate::scalar::Scalar;
 
-/// Points of a cell along an axis: functions that bend nearer to an edge than half their distance are not found out.
+/// Points of a cell along an axis: functions that bend nearer to an edge than half their distance are not
+/// found out.
 const POINTS: usize = 32;
 /// What a difference of values may be off, in units of the rounding of one.
 const ROUNDING: f64 = 1e4;
 /// The same in units of the rounding of a coordinate, in cells.
 const OF_COORDINATES: f64 = 64.0;
 
-/// Refuses a basis that is not one polynomial of its degree along each axis of each cell: ties between cells continue that
-/// polynomial ([`crate::mass::Penalty`]), and continue something else where functions bend within a cell.
+/// Refuses a basis that is not one polynomial of its degree along each axis of each cell: ties between cells
+/// continue that polynomial ([`crate::mass::Penalty`]), and continue something else where functions bend
+/// within a cell.
 pub(super) fn refuse_bends_within_cells<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
@@ -33,7 +35,8 @@ pub(super) fn refuse_bends_within_cells<T: Scalar, const D: usize, B: BasisFamil
     Ok(())
 }
 
-/// Whether differences of one order more than the degree do not vanish between points on the middle line of a cell.
+/// Whether differences of one order more than the degree do not vanish between points on the middle line of a
+/// cell.
 fn bends_in<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
@@ -73,8 +76,8 @@ mod tests {
     use crate::simd::Lanes;
     use nalgebra::vector;
 
-    /// Linear functions averaged over a particle of this half size, in cells (uGIMP): they bend so far from the edges of cells, with a
-    /// half in the middle.
+    /// Linear functions averaged over a particle of this half size, in cells (uGIMP): they bend so far from
+    /// the edges of cells, with a half in the middle.
     #[derive(Clone, Copy, Debug)]
     struct Averaged(f64);
 

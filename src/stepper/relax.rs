@@ -25,8 +25,8 @@ where
     L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
-    /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing has used it
-    /// since), the velocity after its update and before it is mapped.
+    /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing
+    /// has used it since), the velocity after its update and before it is mapped.
     pub(super) fn relax(&mut self, dt: T) {
         self.measure_courant_numbers(dt);
         let (crossed, particles) = (&self.crossed[..], &mut self.particles);
@@ -53,8 +53,8 @@ where
         }
     }
 
-    /// Moves the stress of a law that remembers, which follows from its state or is bound to it, by small strains: stress, state
-    /// and volume stay those of one material.
+    /// Moves the stress of a law that remembers, which follows from its state or is bound to it, by small
+    /// strains: stress, state and volume stay those of one material.
     pub(super) fn strain_to_relaxed(&mut self) {
         let (law, particles) = (&self.law, &mut self.particles);
         let large_strain = law.large_strain();
@@ -85,9 +85,9 @@ where
         }
     }
 
-    /// Parts of each occupied cell that are crossed in a step, in root mean square over its particles: by waves along the shortest
-    /// side, for they run every way, and by the particles, who run along their own. All particles of a cell count alike, so that
-    /// neither their order nor a mirror matters.
+    /// Parts of each occupied cell that are crossed in a step, in root mean square over its particles: by
+    /// waves along the shortest side, for they run every way, and by the particles, who run along their own.
+    /// All particles of a cell count alike, so that neither their order nor a mirror matters.
     pub(super) fn measure_courant_numbers(&mut self, dt: T) {
         let occupied = self.bins.occupied();
         let mut crossed = std::mem::take(&mut self.crossed);

@@ -46,11 +46,12 @@ pub trait Simulation<const D: usize> {
     /// See [`Stepper::set_body_forces`].
     fn set_body_forces(&mut self, force: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>);
 
-    /// A copy of the particles, without the law's and the second phase's data, in the order in which they were given.
+    /// A copy of the particles, without the law's and the second phase's data, in the order in which they
+    /// were given.
     fn particles(&self) -> Particles<f64, D>;
 
-    /// The particles and their liquid without a copy (in `f64`), in the order in which they were given; everything else is
-    /// given up.
+    /// The particles and their liquid without a copy (in `f64`), in the order in which they were given;
+    /// everything else is given up.
     fn into_particles(self: Box<Self>) -> (Particles<f64, D>, Vec<PoreLiquid<f64, D>>);
 
     /// The liquid of every particle; empty where none flows.
@@ -77,7 +78,8 @@ pub trait Simulation<const D: usize> {
     /// See [`Stepper::stiffness`].
     fn stiffness(&mut self, forcing: &Forcing<f64, D>) -> Option<f64>;
 
-    /// Whether [`Simulation::stiffness`] is a proved bound, which costs about a step, and no iteration on a sample of the particles.
+    /// Whether [`Simulation::stiffness`] is a proved bound, which costs about a step, and no iteration on a
+    /// sample of the particles.
     fn stiffness_is_bound(&self) -> bool;
 
     /// See [`Stepper::largest_step`].

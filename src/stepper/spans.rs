@@ -27,7 +27,8 @@ pub(super) struct Spans<T, const D: usize> {
     pub(super) stale: bool,
     /// Whether particles have moved to other places since `bounds` were noted.
     pub(super) unknown: bool,
-    /// Of how many shortest spans those of particles and of cells are to be made, where that is known beforehand.
+    /// Of how many shortest spans those of particles and of cells are to be made, where that is known
+    /// beforehand.
     pub(super) told: Option<[usize; 2]>,
     pub(super) store: Store<T, D>,
     pub(super) totals: Vec<Totals<T, D>>,
@@ -210,8 +211,8 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
         }
     }
 
-    /// Allocates what sweeps will need: so many scalars and vectors of each DOF, summed over particles and, for fits, over
-    /// cells.
+    /// Allocates what sweeps will need: so many scalars and vectors of each DOF, summed over particles and,
+    /// for fits, over cells.
     #[inline(never)]
     pub(super) fn allocate(&mut self, [scalars, vectors]: [usize; 2], fits: bool, dofs: usize) {
         let Store {
@@ -293,9 +294,9 @@ impl<B, T: Scalar, const D: usize> Places<'_, B, Grid<T, D>>
 where
     B: BasisFamily<T, D>,
 {
-    /// Lays the windows of spans end to end, given the bounds of `count` shortest ones. Where they overlap so much that they
-    /// would cost more than they bring, spans are made of two, four, ... of the shortest ones, `joined` at least; returns of
-    /// how many. A single one is the whole.
+    /// Lays the windows of spans end to end, given the bounds of `count` shortest ones. Where they overlap so
+    /// much that they would cost more than they bring, spans are made of two, four, ... of the shortest ones,
+    /// `joined` at least; returns of how many. A single one is the whole.
     fn lay(
         &self,
         spans: &mut Vec<SpanWindow>,

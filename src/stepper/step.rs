@@ -1,7 +1,7 @@
 //! One step, as a list of stages.
 //!
-//! Every method, phase and dimension takes the stages of this list and no other way; a stage that has nothing to do for a type
-//! compiles to nothing. What each stage does is in the file of its name.
+//! Every method, phase and dimension takes the stages of this list and no other way; a stage that has nothing
+//! to do for a type compiles to nothing. What each stage does is in the file of its name.
 
 use super::acceleration::{Walls, accelerate};
 use super::dofs::MassModel;
@@ -160,7 +160,8 @@ where
             by_four,
         };
         let forces = [&mut self.dofs.force[..], &mut self.liquid.force[..]];
-        // Three closures rather than one with branches: what a closure holds costs instructions even where it is not used.
+        // Three closures rather than one with branches: what a closure holds costs instructions even where it
+        // is not used.
         if const { P::FLOWS } {
             let rest = |p: usize| -> StressAndPressure<T, D> { even.rest(phase, &effective[p], &data[p]) };
             fitted.forces::<2>(rest, Targets::<T, D, 0, 0, 2>::of_forces(forces));
@@ -202,7 +203,8 @@ where
         }
     }
 
-    /// Velocities of the particles, and the momenta of the DOFs where those of the particles are simply summed.
+    /// Velocities of the particles, and the momenta of the DOFs where those of the particles are simply
+    /// summed.
     pub(super) fn kick_particles(&mut self, dt: T) -> Totals<T, D> {
         match const { (P::FLOWS, R::AMOUNTS_AT_PARTICLES && !R::RELAXES) } {
             (false, false) => self.kick_phases::<1, 0>(dt),

@@ -1,7 +1,8 @@
 //! P2G: masses, momenta and forces of the DOFs, straight from the particles.
 //!
-//! Everything that a DOF is to know of the particles is summed in as few sweeps as possible: with plain particles
-//! masses and forces in one, and with a liquid that flows both masses, the drag, both momenta and both forces.
+//! Everything that a DOF is to know of the particles is summed in as few sweeps as possible: with plain
+//! particles masses and forces in one, and with a liquid that flows both masses, the drag, both momenta and
+//! both forces.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -17,8 +18,8 @@ use crate::scalar::Scalar;
 use crate::simd::{Packs, each, in_lanes};
 use crate::transfer::{Contribution, Group, Parts, Sum, for_values, p2g};
 
-/// What particles add to DOFs: `S` of the solid's mass, the liquid's and the drag, `C` of both momenta, `G` of the forces on
-/// the whole and on the liquid.
+/// What particles add to DOFs: `S` of the solid's mass, the liquid's and the drag, `C` of both momenta, `G`
+/// of the forces on the whole and on the liquid.
 pub(super) struct Amounts<'a, T: Scalar, const D: usize, P: Phase<T, D>> {
     pub(super) masses: &'a [T],
     pub(super) volumes: &'a [T],
@@ -144,7 +145,8 @@ impl<T: Scalar, const D: usize, P: Phase<T, D>> Clone for Amounts<'_, T, D, P> {
 impl<T: Scalar, const D: usize, P: Phase<T, D>> Copy for Amounts<'_, T, D, P> {}
 
 impl<T: Scalar, const D: usize, P: Phase<T, D>> Amounts<'_, T, D, P> {
-    /// What the balance of the whole feels of a particle's stress; with a liquid that flows less the even load.
+    /// What the balance of the whole feels of a particle's stress; with a liquid that flows less the even
+    /// load.
     #[inline(always)]
     fn total_stress<const G: usize>(&self, effective: &SMatrix<T, D, D>, p: usize) -> SMatrix<T, D, D> {
         if !P::COUPLED {

@@ -9,8 +9,8 @@ use super::matrix::Unknown;
 use crate::scalar::Scalar;
 use crate::simd::with_features;
 
-/// Momentum to velocity, with the prescribed values at held DOFs. DOFs without mass are at rest. Without `fresh` matrix and
-/// held DOFs are those last solved with.
+/// Momentum to velocity, with the prescribed values at held DOFs. DOFs without mass are at rest. Without
+/// `fresh` matrix and held DOFs are those last solved with.
 #[inline(never)]
 pub(super) fn divide_by_mass<T: Scalar, const D: usize>(
     dofs: &mut Dofs<T, D>,

@@ -1,8 +1,9 @@
 //! The part of a large grid in which the stepper works.
 //!
-//! Cells and DOFs are numbered, and have a place in memory, in a box around the particles only ([`Window`]), which is laid anew
-//! when a particle comes near its border. Numbers grow in the same order in any box, and so do all sums: where the box
-//! lies changes no bit but through the spans that threads share, and the preconditioner of a consistent mass matrix.
+//! Cells and DOFs are numbered, and have a place in memory, in a box around the particles only ([`Window`]),
+//! which is laid anew when a particle comes near its border. Numbers grow in the same order in any box, and
+//! so do all sums: where the box lies changes no bit but through the spans that threads share, and the
+//! preconditioner of a consistent mass matrix.
 
 use super::Stepper;
 use crate::basis::BasisFamily;

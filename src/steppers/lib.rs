@@ -1,8 +1,8 @@
 //! The steppers of all methods that scenes can name, in the dimensions and scalars that they have there.
 //!
-//! A [`Stepper`] is compiled for its basis, its reconstruction, its phases and its scalar. That takes most of the time of a
-//! build, and it happens here, once for all: what reads scenes, the command and the tests know steppers as
-//! [`Simulation`]s.
+//! A [`Stepper`] is compiled for its basis, its reconstruction, its phases and its scalar. That takes most of
+//! the time of a build, and it happens here, once for all: what reads scenes, the command and the tests know
+//! steppers as [`Simulation`]s.
 
 #![forbid(unsafe_code)]
 
@@ -112,8 +112,8 @@ where
     }
 }
 
-/// Whether there is no scene of two phases: relaxed TLS knows one phase only beyond one axis, and in space, where each
-/// stepper takes seconds to compile, two phases are left to callers that name the types.
+/// Whether there is no scene of two phases: relaxed TLS knows one phase only beyond one axis, and in space,
+/// where each stepper takes seconds to compile, two phases are left to callers that name the types.
 const fn one_phase_only<T, const D: usize, R>() -> bool
 where
     T: Scalar,

@@ -1,18 +1,19 @@
 //! Least squares in the Taylor functions of one cell.
 //!
-//! The fit is kept as a unit triangular matrix `U` that turns the Taylor functions into functions orthogonal on the cell's
-//! particles, `pi = U psi`, and their inverse squares `1/d_k`, `d_k = sum_p pi_k(x_p)^2`. Then the coefficients of any field are
-//! `U^T D^-1 sum_p pi(x_p) q_p`: one geometry serves stress, density and momentum.
+//! The fit is kept as a unit triangular matrix `U` that turns the Taylor functions into functions orthogonal
+//! on the cell's particles, `pi = U psi`, and their inverse squares `1/d_k`, `d_k = sum_p pi_k(x_p)^2`. Then
+//! the coefficients of any field are `U^T D^-1 sum_p pi(x_p) q_p`: one geometry serves stress, density and
+//! momentum.
 //!
-//! Where the points are well spread, `U` comes from the Gram matrix (a few sums per particle), and the sums may be taken of
-//! `psi q` and turned once per cell. Where they are not, squaring the condition number would cost the digits that are left
-//! (and a Cholesky factorisation of a singular matrix may well succeed with garbage), so there `U` comes from Givens
-//! rotations, one particle at a time, and the sums are of `pi q`. A function is dropped where the points hardly see it:
-//! where what is left of it after the functions before it, in root mean square over the points, is less than a share of
-//! its root mean square over the cell.
+//! Where the points are well spread, `U` comes from the Gram matrix (a few sums per particle), and the sums
+//! may be taken of `psi q` and turned once per cell. Where they are not, squaring the condition number would
+//! cost the digits that are left (and a Cholesky factorisation of a singular matrix may well succeed with
+//! garbage), so there `U` comes from Givens rotations, one particle at a time, and the sums are of `pi q`. A
+//! function is dropped where the points hardly see it: where what is left of it after the functions before
+//! it, in root mean square over the points, is less than a share of its root mean square over the cell.
 //!
-//! There each function is fitted to what those before it left, so that round-off of the coefficients counts the
-//! condition number of `U` once. The share bounds it.
+//! There each function is fitted to what those before it left, so that round-off of the coefficients counts
+//! the condition number of `U` once. The share bounds it.
 
 use std::ops::Range;
 
@@ -23,16 +24,16 @@ use super::{shift_sums, taylor_functions};
 use crate::field::Field;
 use crate::scalar::Scalar;
 
-/// Tolerance of a fit along one axis: 2 %. Much smaller ones let particles that lie close together, or all near a zero of a
-/// function, decide a slope of the whole cell, so that the noise of their values swamps the fit; 10 % and more smooth what
-/// the particles do resolve.
+/// Tolerance of a fit along one axis: 2 %. Much smaller ones let particles that lie close together, or all
+/// near a zero of a function, decide a slope of the whole cell, so that the noise of their values swamps the
+/// fit; 10 % and more smooth what the particles do resolve.
 pub const DEFAULT_TOLERANCE: f64 = 0.02;
 
-/// Tolerance in two and three dimensions: 30 %. There six or ten functions share about as many particles, and irregular ones
-/// leave little of the last functions. On the manufactured waves of `docs/verification/space.md` tolerances
-/// from 2 % to 40 % give the same errors where nine particles a cell lie on a lattice; where they are
-/// jittered, errors grow under refinement with 2 %, and fall with 20 % and more. Above 41 % the field of
-/// `tests/identities/anchors.rs` loses its mixed function.
+/// Tolerance in two and three dimensions: 30 %. There six or ten functions share about as many particles, and
+/// irregular ones leave little of the last functions. On the manufactured waves of
+/// `docs/verification/space.md` tolerances from 2 % to 40 % give the same errors where nine particles a cell
+/// lie on a lattice; where they are jittered, errors grow under refinement with 2 %, and fall with 20 % and
+/// more. Above 41 % the field of `tests/identities/anchors.rs` loses its mixed function.
 pub const DEFAULT_TOLERANCE_IN_SPACE: f64 = 0.3;
 
 /// The default tolerance in so many dimensions.
@@ -96,7 +97,8 @@ impl<T: Scalar, const NB: usize> Gram<T, NB> {
         self.products[(k, 0)]
     }
 
-    /// Adds the points of a neighbouring cell, given by the sums of its own: it is the one `above` or below along `axis`.
+    /// Adds the points of a neighbouring cell, given by the sums of its own: it is the one `above` or below
+    /// along `axis`.
     #[inline(always)]
     pub(crate) fn add_neighbour<const D: usize>(&mut self, other: &Self, axis: usize, above: bool) {
         // Rows, then columns of the whole symmetric matrix.
@@ -125,8 +127,8 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
     /// Prepares the fit on the points with local coordinates `points`, a sequence that can be run through
     /// repeatedly.
     ///
-    /// `first` is 0 for the free fit and 1 where the mean is given. At most as many functions as points are used, and
-    /// none of which less than the share `tolerance` is left on the points ([`default_tolerance`]).
+    /// `first` is 0 for the free fit and 1 where the mean is given. At most as many functions as points are
+    /// used, and none of which less than the share `tolerance` is left on the points ([`default_tolerance`]).
     pub fn new<const D: usize>(
         points: impl Iterator<Item = SVector<T, D>> + Clone,
         first: usize,
@@ -165,8 +167,8 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         Self::from_rotations(points, wanted, &least)
     }
 
-    /// The fit with all functions from sums alone; `None` where it would lose too many digits or the points do not tell the
-    /// functions apart.
+    /// The fit with all functions from sums alone; `None` where it would lose too many digits or the points
+    /// do not tell the functions apart.
     #[inline(always)]
     pub(crate) fn full<const D: usize>(gram: &Gram<T, NB>, tolerance: T) -> Option<Self> {
         if gram.count < NB {
@@ -176,8 +178,8 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         (fit.functions() == NB).then_some(fit)
     }
 
-    /// `L D L^T` factorisation of the Gram matrix, without each function of which clearly too little is left; `None` where that is
-    /// in doubt, or too many digits are lost.
+    /// `L D L^T` factorisation of the Gram matrix, without each function of which clearly too little is left;
+    /// `None` where that is in doubt, or too many digits are lost.
     #[inline(always)]
     fn from_gram(gram: &Gram<T, NB>, wanted: Range<usize>, least: &SVector<T, NB>) -> Option<Self> {
         let first = wanted.start;
@@ -254,9 +256,10 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         self.well_spread
     }
 
-    /// Coefficients of the field with the given `samples` (local coordinates, weight and value at the same points as
-    /// at the preparation; weight 1 unless it was weighted), less `mean`. The mean itself is *not* added to the first coefficient.
-    /// Where the points are not well spread the samples are run through once for each function.
+    /// Coefficients of the field with the given `samples` (local coordinates, weight and value at the same
+    /// points as at the preparation; weight 1 unless it was weighted), less `mean`. The mean itself is *not*
+    /// added to the first coefficient. Where the points are not well spread the samples are run through once
+    /// for each function.
     #[inline(always)]
     pub fn coefficients<const D: usize, Q: Field<T>>(
         &self,
@@ -282,10 +285,11 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
         })
     }
 
-    /// Coefficients where the points are not well spread: each function is fitted to what those before it have left.
-    /// Fitted to the values themselves, a function that is small on the points would be given the round-off of all
-    /// that the values have in common, divided by the square of what is left of it. `samples` hands over local
-    /// coordinates, weight and value of each point; a call through a pointer, so that this is compiled once for a field.
+    /// Coefficients where the points are not well spread: each function is fitted to what those before it
+    /// have left. Fitted to the values themselves, a function that is small on the points would be given the
+    /// round-off of all that the values have in common, divided by the square of what is left of it.
+    /// `samples` hands over local coordinates, weight and value of each point; a call through a pointer, so
+    /// that this is compiled once for a field.
     #[cold]
     #[inline(never)]
     fn successive_coefficients<const D: usize, Q: Field<T>>(
@@ -341,8 +345,8 @@ impl<T: Scalar, const NB: usize> CellFit<T, NB> {
     }
 }
 
-/// The unit triangular inverse of a unit lower triangular matrix, whose diagonal holds other things and is kept, from row and
-/// column `first` on.
+/// The unit triangular inverse of a unit lower triangular matrix, whose diagonal holds other things and is
+/// kept, from row and column `first` on.
 #[inline(always)]
 fn inverse_below_the_diagonal<T: Scalar, const NB: usize>(
     l: &SMatrix<T, NB, NB>,

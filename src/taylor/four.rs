@@ -1,8 +1,8 @@
 //! The fits of four cells at once.
 //!
-//! The same least squares as [`super::CellFit`] from the Gram matrix, one cell in each lane, and solved where they stand
-//! instead of being kept. A function of which the points clearly see nothing is left out here too; a cell where that is
-//! in doubt, or digits would be lost, is *hard* and left to [`super::CellFit`].
+//! The same least squares as [`super::CellFit`] from the Gram matrix, one cell in each lane, and solved where
+//! they stand instead of being kept. A function of which the points clearly see nothing is left out here too;
+//! a cell where that is in doubt, or digits would be lost, is *hard* and left to [`super::CellFit`].
 
 use nalgebra::SVector;
 
@@ -18,7 +18,8 @@ pub const MOST_COMPONENTS: usize = 9;
 /// Components of the fields of a step along one axis, at most: mass and momentum.
 pub(crate) const FEW_COMPONENTS: usize = 2;
 
-/// Whether a field along one axis has no more of them: arrays are then short. A constant, so that a compiler makes no code for the other case.
+/// Whether a field along one axis has no more of them: arrays are then short. A constant, so that a compiler
+/// makes no code for the other case.
 pub(crate) const fn are_few<T: Scalar, Q: Field<T>, const D: usize>() -> bool {
     D == 1 && Q::COMPONENTS <= FEW_COMPONENTS
 }
@@ -50,7 +51,8 @@ pub(crate) fn taylor_lanes<T: Scalar, K: Lanes<T>, const D: usize, const NB: usi
     psi
 }
 
-/// Sums over the points of four cells: of products of the functions, and of functions times the components of a field.
+/// Sums over the points of four cells: of products of the functions, and of functions times the components of
+/// a field.
 #[derive(Clone, Copy)]
 pub(crate) struct BatchSums<V, const NB: usize, const C: usize = MOST_COMPONENTS> {
     /// The lower half.
@@ -64,7 +66,8 @@ pub(crate) type Rights<V, const NB: usize, const C: usize = MOST_COMPONENTS> = [
 /// Products of two functions, the lower half.
 pub(crate) type Products<V, const NB: usize> = [[V; NB]; NB];
 
-/// Unit triangular factor below the diagonal, one over the squares that are left on it, zero for functions left out.
+/// Unit triangular factor below the diagonal, one over the squares that are left on it, zero for functions
+/// left out.
 #[derive(Clone, Copy)]
 pub(crate) struct Factor<V, const NB: usize>(pub(crate) Products<V, NB>);
 
@@ -99,8 +102,8 @@ impl<V: Copy, const NB: usize, const C: usize> BatchSums<V, NB, C> {
         }
     }
 
-    /// Adds the products of a point of each cell with its weight, zero where a cell has no further point: all, or of the functions
-    /// from number `from` on with those before them.
+    /// Adds the products of a point of each cell with its weight, zero where a cell has no further point:
+    /// all, or of the functions from number `from` on with those before them.
     #[inline(always)]
     pub(crate) fn add_products<T: Scalar>(&mut self, psi: &[V; NB], weight: V, from: usize)
     where
@@ -114,7 +117,8 @@ impl<V: Copy, const NB: usize, const C: usize> BatchSums<V, NB, C> {
         }
     }
 
-    /// Adds the functions times the components of a field; `first` is the weight with the first function, which is one.
+    /// Adds the functions times the components of a field; `first` is the weight with the first function,
+    /// which is one.
     #[inline(always)]
     pub(crate) fn add_values<T: Scalar>(
         &mut self,
@@ -134,8 +138,8 @@ impl<V: Copy, const NB: usize, const C: usize> BatchSums<V, NB, C> {
         }
     }
 
-    /// Takes the mean of each component over a cell of the given volume, whose integral is its sum with the first function, out of
-    /// the sums; returns it.
+    /// Takes the mean of each component over a cell of the given volume, whose integral is its sum with the
+    /// first function, out of the sums; returns it.
     #[inline(always)]
     pub(crate) fn take_out_mean<T: Scalar, K: Lanes<T, V = V>>(
         &mut self,
@@ -224,7 +228,8 @@ pub(crate) fn factorise<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>
     }
 }
 
-/// The same where all points clearly see all functions: the same operations without what then changes nothing.
+/// The same where all points clearly see all functions: the same operations without what then changes
+/// nothing.
 #[inline(always)]
 fn factorise_full<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
     k: K,

@@ -2,7 +2,8 @@
 //!
 #![doc = include_str!("../../docs/formulas.html")]
 //!
-//! In a cell with centre $c$ and half sizes $d_a$ let $s_a = (x_a - c_a)/d_a$. The basis (journal section 5.2) is
+//! In a cell with centre $c$ and half sizes $d_a$ let $s_a = (x_a - c_a)/d_a$. The basis (journal section
+//! 5.2) is
 //!
 //! $$\psi_0 = 1,\quad \psi_{1+a} = s_a,\quad \tfrac12 s_a^2 - \tfrac16,\quad s_a s_b \quad (a \lt b),$$
 //!

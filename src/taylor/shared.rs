@@ -1,8 +1,9 @@
 //! One factorisation for both fits of a step.
 //!
-//! Between the fit of the stress and that of the densities no particle moves, so both have the same Gram matrix. With the constant
-//! function last in `L D L^T` the columns before it are the factor of the fit whose mean is given, and all of them that of the
-//! free one. Only for cells that clearly determine all functions: where some are left out the order decides which.
+//! Between the fit of the stress and that of the densities no particle moves, so both have the same Gram
+//! matrix. With the constant function last in `L D L^T` the columns before it are the factor of the fit whose
+//! mean is given, and all of them that of the free one. Only for cells that clearly determine all functions:
+//! where some are left out the order decides which.
 
 use nalgebra::SVector;
 
@@ -33,7 +34,8 @@ pub(crate) const fn kept<const NB: usize>() -> usize {
 }
 
 impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
-    /// Of the Gram matrices `gram` of cells with so many points, if these clearly determine all functions of all four.
+    /// Of the Gram matrices `gram` of cells with so many points, if these clearly determine all functions of
+    /// all four.
     #[inline(always)]
     pub(crate) fn new<T: Scalar, K: Packs<T, V = V>, const D: usize>(
         k: K,
@@ -119,7 +121,8 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
         Some(Self { lower, with_constant })
     }
 
-    /// Coefficients of component `q` from its sums, with all functions or, given the mean, all but the constant.
+    /// Coefficients of component `q` from its sums, with all functions or, given the mean, all but the
+    /// constant.
     #[inline(always)]
     pub(crate) fn solve<T: Scalar, const C: usize>(
         &self,

@@ -4,9 +4,9 @@ use crate::field::Field;
 use crate::scalar::Scalar;
 use crate::simd::{Lanes, Number};
 
-/// Turns sums of `psi(s) q` into sums of `psi(s + 2 e_axis) q` (`up`) or of `psi(s - 2 e_axis) q`: from a cell's own local
-/// coordinates to those of its neighbour below or above along `axis`. The functions span the polynomials of their degree, so
-/// no point need be visited again.
+/// Turns sums of `psi(s) q` into sums of `psi(s + 2 e_axis) q` (`up`) or of `psi(s - 2 e_axis) q`: from a
+/// cell's own local coordinates to those of its neighbour below or above along `axis`. The functions span the
+/// polynomials of their degree, so no point need be visited again.
 #[inline(always)]
 pub(crate) fn shift_sums<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
     sums: &mut [Q; NB],

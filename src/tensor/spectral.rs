@@ -5,27 +5,29 @@ use nalgebra::{SMatrix, SVector};
 use crate::scalar::Scalar;
 use crate::simd::is;
 
-/// Sweeps after which the iteration ends whatever is left. Convergence is quadratic: a 3 x 3 tensor takes three to five.
+/// Sweeps after which the iteration ends whatever is left. Convergence is quadratic: a 3 x 3 tensor takes
+/// three to five.
 const SWEEPS: usize = 12;
 
 /// Sweeps without anything to turn that are made for the derivatives that numbers carry: each squares what is
 /// left of them.
 const SWEEPS_OF_DERIVATIVES: usize = 2;
 
-/// Principal values and axes of a symmetric tensor, `A = sum_k value_k axis_k axis_k^T`, in no particular order.
+/// Principal values and axes of a symmetric tensor, `A = sum_k value_k axis_k axis_k^T`, in no particular
+/// order.
 ///
-/// Jacobi's rotations (Golub & Van Loan, *Matrix Computations*, 8.5): in two dimensions a single one is the closed form, in three
-/// they are repeated. Equal values are no special case, and of a positive definite tensor even a value much smaller than the
-/// others keeps its digits (Demmel & Veselic 1992), as far as the entries determine it.
+/// Jacobi's rotations (Golub & Van Loan, *Matrix Computations*, 8.5): in two dimensions a single one is the
+/// closed form, in three they are repeated. Equal values are no special case, and of a positive definite
+/// tensor even a value much smaller than the others keeps its digits (Demmel & Veselic 1992), as far as the
+/// entries determine it.
 ///
 /// # Derivatives
 /// Axes have no derivative where two values are equal, but isotropic functions of the tensor have one. So
 /// with dual numbers the axes of values that are equal, or nearly so, are turned without derivatives, and
 /// what these leave off the diagonal is kept as [`Spectral::rest`]: `A = Q (diag(values) + rest) Q^T` holds
-/// with all derivatives. A function of the tensor has
-/// `f[value_p, value_q] rest_pq` there, with the divided difference of `f`, which is `f'` for equal values (Daleckii & Krein 1965).
-/// First derivatives are right for any values, higher ones where all values differ by more than the cube root
-/// of the scalar's epsilon.
+/// with all derivatives. A function of the tensor has `f[value_p, value_q] rest_pq` there, with the divided
+/// difference of `f`, which is `f'` for equal values (Daleckii & Krein 1965). First derivatives are right for
+/// any values, higher ones where all values differ by more than the cube root of the scalar's epsilon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spectral<T, const D: usize> {
     /// Principal values.

@@ -280,8 +280,8 @@ pub enum Expected {
     },
     /// At least this much.
     AtLeast(f64),
-    /// A deviation of at least this many times what round-off explains, because the claim is that the property
-    /// does *not* hold; what was found is the largest such multiple.
+    /// A deviation of at least this many times what round-off explains, because the claim is that the
+    /// property does *not* hold; what was found is the largest such multiple.
     Violation {
         /// Multiple of round-off.
         times: f64,

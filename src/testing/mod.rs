@@ -1,8 +1,8 @@
 //! Conformance checks for types that implement this crate's traits.
 //!
-//! Each check takes an instance and what it *claims*, and asserts a claim both ways: what is claimed must hold,
-//! and what is claimed not to hold must visibly fail, so that a claim can be neither too bold nor too shy.
-//! The checks return the first [`Failure`] instead of panicking:
+//! Each check takes an instance and what it *claims*, and asserts a claim both ways: what is claimed must
+//! hold, and what is claimed not to hold must visibly fail, so that a claim can be neither too bold nor too
+//! shy. The checks return the first [`Failure`] instead of panicking:
 //!
 //! ```
 //! use materialpoint::{basis::DualDomain, grid::Grid, testing};
@@ -20,8 +20,8 @@
 //! # }
 //! ```
 //!
-//! Tolerances follow from the number of operations and the machine epsilon of the scalar; none is a free choice
-//! of the caller.
+//! Tolerances follow from the number of operations and the machine epsilon of the scalar; none is a free
+//! choice of the caller.
 
 mod basis;
 mod failure;

@@ -1,8 +1,8 @@
-//! Sums at the DOFs of one cell for a basis that is no product, kept at hand while particles of that cell come one
-//! after the other.
+//! Sums at the DOFs of one cell for a basis that is no product, kept at hand while particles of that cell
+//! come one after the other.
 //!
-//! Adding every particle's part to the DOFs themselves would make each particle wait for the one before: they mostly share
-//! DOFs, and an addition in memory takes twice as long as one in a register.
+//! Adding every particle's part to the DOFs themselves would make each particle wait for the one before: they
+//! mostly share DOFs, and an addition in memory takes twice as long as one in a register.
 
 use nalgebra::SVector;
 
@@ -12,10 +12,12 @@ use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
 use crate::scalar::Scalar;
 
-/// DOFs that are kept at hand, enough for the cubic B-splines of a cell in three dimensions; any more are added directly.
+/// DOFs that are kept at hand, enough for the cubic B-splines of a cell in three dimensions; any more are
+/// added directly.
 const AT_HAND: usize = 64;
 
-/// Sums of the DOFs of a cell, in the order in which the basis visits them: the same one for every point of the cell.
+/// Sums of the DOFs of a cell, in the order in which the basis visits them: the same one for every point of
+/// the cell.
 pub(super) struct StencilSums<'a, T, const D: usize, B, const S: usize, const C: usize, const G: usize> {
     basis: &'a B,
     grid: &'a Grid<T, D>,
@@ -36,7 +38,8 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, const S: usize, const 
         }
     }
 
-    /// Adds `parts`, tensors by coordinates, at every DOF that `x` in `cell` sees. `sink(dof, sum)` takes the sums of the cell before.
+    /// Adds `parts`, tensors by coordinates, at every DOF that `x` in `cell` sees. `sink(dof, sum)` takes the
+    /// sums of the cell before.
     #[inline(always)]
     pub(super) fn add(
         &mut self,

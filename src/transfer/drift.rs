@@ -1,8 +1,10 @@
-//! G2P of velocities and their gradients: particles move, and what deforms them is noted for a block of them at a time.
+//! G2P of velocities and their gradients: particles move, and what deforms them is noted for a block of them
+//! at a time.
 //!
-//! How the particles of a block deform is noted when they move, and their law is asked in a loop of its own. Where a law is a few
-//! operations, whoever wrote it, a compiler makes vectors of such a loop; among all that moves a particle it does not. The call
-//! through a pointer for each block cannot be seen, and the sweep is compiled once for all laws and phases.
+//! How the particles of a block deform is noted when they move, and their law is asked in a loop of its own.
+//! Where a law is a few operations, whoever wrote it, a compiler makes vectors of such a loop; among all that
+//! moves a particle it does not. The call through a pointer for each block cannot be seen, and the sweep is
+//! compiled once for all laws and phases.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -14,7 +16,8 @@ use crate::particles::{Places, settle};
 use crate::scalar::Scalar;
 use crate::simd::{MOST_LANES, Packs, dispatch_for, each, inlined};
 
-/// Particles in a block, at most: enough for loops to be worth their start, and few enough for the nearest cache.
+/// Particles in a block, at most: enough for loops to be worth their start, and few enough for the nearest
+/// cache.
 const BLOCK: usize = 128;
 
 /// What moves particles: the velocities of the DOFs of `C` fields, the first of which carries them.
@@ -24,7 +27,8 @@ pub(crate) struct Drift<'a, T, const D: usize, const C: usize> {
     pub(crate) dt: T,
 }
 
-/// Takes in the displacement gradients of the step, field by field, of particles from an index on; whether to go on.
+/// Takes in the displacement gradients of the step, field by field, of particles from an index on; whether to
+/// go on.
 pub(crate) type Deform<'a, T, const D: usize, const C: usize> =
     dyn FnMut(usize, [&[SMatrix<T, D, D>]; C]) -> bool + 'a;
 
@@ -35,7 +39,8 @@ struct Block<T, const D: usize, const C: usize> {
 }
 
 impl<T: Scalar, const D: usize, const C: usize> Block<T, D, C> {
-    /// Notes those of as many lanes as there are from place `at` on, component `(c, a)` at `[c][a]` of each field.
+    /// Notes those of as many lanes as there are from place `at` on, component `(c, a)` at `[c][a]` of each
+    /// field.
     #[inline(always)]
     fn note<K: Packs<T, N>, const N: usize>(&mut self, k: K, lanes: &[[[K::V; D]; D]; C], at: usize) {
         for q in 0..C {

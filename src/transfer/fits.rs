@@ -1,7 +1,8 @@
 //! Integrals of fits over cells, four cells at a time.
 //!
-//! The points of the fits are at the same places in every cell, so the functions there are the same in all cells but those
-//! near the ends of the grid: they are computed once and kept until a cell of another kind comes.
+//! The points of the fits are at the same places in every cell, so the functions there are the same in all
+//! cells but those near the ends of the grid: they are computed once and kept until a cell of another kind
+//! comes.
 
 use std::ops::Range;
 
@@ -152,9 +153,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         })
     }
 
-    /// Streams fields that are fitted in each cell to DOFs: what an [`Integrand`] makes of their values at points. `sink(dof,
-    /// sum)` takes the sums, `matrix(q, i, j, mass)`, `j <= i`, what the `q`-th mass adds to its consistent matrix. Returns
-    /// how many cells were fitted without the full set of functions.
+    /// Streams fields that are fitted in each cell to DOFs: what an [`Integrand`] makes of their values at
+    /// points. `sink(dof, sum)` takes the sums, `matrix(q, i, j, mass)`, `j <= i`, what the `q`-th mass adds
+    /// to its consistent matrix. Returns how many cells were fitted without the full set of functions.
     #[inline(always)]
     pub(crate) fn integrate<
         M: BasisFamily<T, D>,
@@ -265,7 +266,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         reduced
     }
 
-    /// Cells at `places` that are `hard`, point by point; returns how many were fitted without the full set of functions.
+    /// Cells at `places` that are `hard`, point by point; returns how many were fitted without the full set
+    /// of functions.
     #[inline(never)]
     fn integrate_single<
         M: BasisFamily<T, D>,
@@ -333,7 +335,8 @@ pub(crate) fn components_of<T: Scalar, Q: Field<T>>(value: &Q) -> [T; MOST_COMPO
     components
 }
 
-/// What the value of a fitted field at a point adds to DOFs: `S` scalars, `C` vectors and `G` tensors, and to `W` mass matrices.
+/// What the value of a fitted field at a point adds to DOFs: `S` scalars, `C` vectors and `G` tensors, and to
+/// `W` mass matrices.
 pub(crate) trait Integrand<
     T: Scalar,
     const D: usize,
@@ -418,7 +421,8 @@ fn tensor<T, V: Number<T>, const D: usize>(value: &[V; MOST_COMPONENTS], slopes:
     )
 }
 
-/// Densities of mass and momentum, of one phase or two. `S` of the masses go to their row sums, `W` to matrices.
+/// Densities of mass and momentum, of one phase or two. `S` of the masses go to their row sums, `W` to
+/// matrices.
 pub(crate) struct MassesAndMomenta<Q>(std::marker::PhantomData<Q>);
 
 impl<T: Scalar, const D: usize, const S: usize, const W: usize> Integrand<T, D, S, 1, 0, W>

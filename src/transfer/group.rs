@@ -6,7 +6,8 @@ use crate::grid::Cell;
 use crate::scalar::Scalar;
 use crate::simd::{Packs, each, in_lanes, inlined};
 
-/// Particles of one cell that follow each other, at most `N`: one for each lane. Spare lanes repeat the last one.
+/// Particles of one cell that follow each other, at most `N`: one for each lane. Spare lanes repeat the last
+/// one.
 #[derive(Clone, Copy)]
 pub(crate) struct Group<const N: usize> {
     pub(crate) first: usize,
@@ -43,8 +44,9 @@ impl<const N: usize> Group<N> {
         self.first + lane.min(self.count - 1)
     }
 
-    /// `make` of what an array says of the particle of each lane; the group must be full if `FULL`. It is asked in both branches,
-    /// and not once of what they find: numbers that follow each other are then one load.
+    /// `make` of what an array says of the particle of each lane; the group must be full if `FULL`. It is
+    /// asked in both branches, and not once of what they find: numbers that follow each other are then one
+    /// load.
     #[inline(always)]
     pub(crate) fn with<const FULL: bool, A: Copy, R>(self, values: &[A], make: impl Fn([A; N]) -> R) -> R {
         match values[self.first..].first_chunk() {
@@ -199,8 +201,8 @@ fn are_alike<const D: usize, const N: usize>(cells: &[Cell<D>; N]) -> bool {
     bits == 0
 }
 
-/// Whether most particles of the given cells come in groups of eight. Asked of the first few: with eight lanes a group that is not
-/// full takes longer than two groups of four.
+/// Whether most particles of the given cells come in groups of eight. Asked of the first few: with eight
+/// lanes a group that is not full takes longer than two groups of four.
 pub(crate) fn come_in_eights<const D: usize>(cells: &[Cell<D>]) -> bool {
     let some = &cells[..cells.len().min(64)];
     let (mut p, mut full) = (0, 0);
@@ -218,8 +220,8 @@ pub(super) trait EachGroup<const N: usize> {
     fn take<const FULL: bool>(&mut self, group: Group<N>);
 }
 
-/// Calls [`EachGroup::take`] for the groups of the particles of the given cells. In one dimension, where a group takes as long as
-/// the question whether it is full, full ones have a loop of their own that asks once.
+/// Calls [`EachGroup::take`] for the groups of the particles of the given cells. In one dimension, where a
+/// group takes as long as the question whether it is full, full ones have a loop of their own that asks once.
 #[inline(always)]
 pub(super) fn each_group<const D: usize, const N: usize>(cells: &[Cell<D>], sweep: &mut impl EachGroup<N>) {
     let mut p = 0;

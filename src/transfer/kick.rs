@@ -51,8 +51,8 @@ impl<T: Scalar, const D: usize> Momentum<T, D> {
     }
 }
 
-/// Accelerates the particles of a span by the fields with the given DOFs and hands `sink(dof, momenta)` what they then
-/// add to the DOFs, of the first `M` fields; returns their momenta, and `what` as it is then.
+/// Accelerates the particles of a span by the fields with the given DOFs and hands `sink(dof, momenta)` what
+/// they then add to the DOFs, of the first `M` fields; returns their momenta, and `what` as it is then.
 #[inline(always)]
 pub(crate) fn kick<
     const M: usize,

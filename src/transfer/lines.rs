@@ -1,6 +1,7 @@
 //! Sums of four cells that follow each other along the only axis.
 //!
-//! They share DOFs: added up before they are handed over, each DOF is read and written once, and no cell waits for the one before.
+//! They share DOFs: added up before they are handed over, each DOF is read and written once, and no cell
+//! waits for the one before.
 
 use nalgebra::SVector;
 
@@ -35,7 +36,8 @@ impl<T: Scalar> Line<T> {
 }
 
 impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Sums<V, D, S, C, G> {
-    /// Hands `sink(dof, sum)` the sums of the cell in each lane, the first of which is `cell`, and starts again.
+    /// Hands `sink(dof, sum)` the sums of the cell in each lane, the first of which is `cell`, and starts
+    /// again.
     #[inline(always)]
     pub(super) fn scatter_line<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, V = V>>(
         &mut self,

@@ -1,9 +1,9 @@
 //! The sweeps between particles and grid: P2G, G2P and both in one.
 //!
-//! A sweep is written once, generic in the packs that it computes with ([`crate::simd`]), in the basis and in what
-//! particles add to the DOFs or take from them ([`Contribution`], [`Kick`]): it serves one phase and two, plain
-//! particles and the points of fits, four particles of a cell in the lanes or four cells. It knows no law and no
-//! phase. Packs are chosen once a span, at run time.
+//! A sweep is written once, generic in the packs that it computes with ([`crate::simd`]), in the basis and in
+//! what particles add to the DOFs or take from them ([`Contribution`], [`Kick`]): it serves one phase and
+//! two, plain particles and the points of fits, four particles of a cell in the lanes or four cells. It knows
+//! no law and no phase. Packs are chosen once a span, at run time.
 //!
 //! | | |
 //! |---|---|
@@ -13,13 +13,13 @@
 //! | [`fits`] | P2G from polynomials fitted in each cell |
 //! | [`pairs`] | the consistent mass matrix |
 //!
-//! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs, and then over the
-//! rows (`rows`). What a group adds to DOFs stays in lanes while particles of its cell come, and longer where the next
-//! cell is the neighbour along axis 0 (`sums`). A basis that is no product is asked for its functions point by
-//! point, with a single number in the place of a pack.
+//! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs,
+//! and then over the rows (`rows`). What a group adds to DOFs stays in lanes while particles of its cell
+//! come, and longer where the next cell is the neighbour along axis 0 (`sums`). A basis that is no product is
+//! asked for its functions point by point, with a single number in the place of a pack.
 //!
-//! A group that is not full repeats its last particle without mass and volume. Groups depend on the particles' order and on
-//! where spans begin, not on threads.
+//! A group that is not full repeats its last particle without mass and volume. Groups depend on the
+//! particles' order and on where spans begin, not on threads.
 
 mod cell_sums;
 mod drift;
@@ -132,8 +132,8 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'a, T, D, B> {
     }
 }
 
-/// Calls `$sweep` with the functions that a basis has at points that stand still. Their values are those at points
-/// that move too unless [`FixedPoints::Other`].
+/// Calls `$sweep` with the functions that a basis has at points that stand still. Their values are those at
+/// points that move too unless [`FixedPoints::Other`].
 macro_rules! at_fixed_points {
     ($basis:ty, $value:expr, |$fixed:ident| $sweep:expr) => {
         if const { matches!(<$basis>::AT_FIXED_POINTS, $crate::basis::FixedPoints::Linear) } {

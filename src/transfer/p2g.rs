@@ -12,17 +12,17 @@ use crate::grid::{Cell, Grid};
 use crate::scalar::Scalar;
 use crate::simd::{One, Packs, dispatch_for};
 
-/// What particles of a span add to the DOFs: `S` scalars and `C` vectors times the functions, `G` tensors times their
-/// gradients. Fused sweeps are contributions of several quantities.
+/// What particles of a span add to the DOFs: `S` scalars and `C` vectors times the functions, `G` tensors
+/// times their gradients. Fused sweeps are contributions of several quantities.
 pub(crate) trait Contribution<T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize>:
     Copy
 {
-    /// The same of the first so many particles: lengths that a compiler sees to be equal, so that one test of an index does for
-    /// all arrays.
+    /// The same of the first so many particles: lengths that a compiler sees to be equal, so that one test of
+    /// an index does for all arrays.
     fn cut(self, count: usize) -> Self;
 
-    /// That of the particles of a group, nothing in spare lanes; `slopes` are to be multiplied with the columns of tensors:
-    /// gradients are by coordinates in cell sizes.
+    /// That of the particles of a group, nothing in spare lanes; `slopes` are to be multiplied with the
+    /// columns of tensors: gradients are by coordinates in cell sizes.
     fn parts<K: Packs<T, N>, const N: usize, const FULL: bool>(
         &self,
         k: K,
@@ -31,8 +31,8 @@ pub(crate) trait Contribution<T: Scalar, const D: usize, const S: usize, const C
     ) -> Parts<K::V, D, S, C, G>;
 }
 
-/// Hands `sink(dof, sum)` what particles add to the DOFs. All is taken by value: what is behind a reference would be read anew
-/// for each DOF.
+/// Hands `sink(dof, sum)` what particles add to the DOFs. All is taken by value: what is behind a reference
+/// would be read anew for each DOF.
 #[inline(always)]
 pub(crate) fn p2g<
     T: Scalar,

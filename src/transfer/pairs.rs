@@ -1,7 +1,7 @@
 //! Sums over points of products of two functions, kept in lanes: what a cell adds to a mass matrix.
 //!
-//! Functions are products along the axes, and so are products of two of them: of the 45 pairs that the nine functions of a
-//! quadratic cell in the plane make, only 36 = 6 x 6 sums differ, of the 378 in space 216.
+//! Functions are products along the axes, and so are products of two of them: of the 45 pairs that the nine
+//! functions of a quadratic cell in the plane make, only 36 = 6 x 6 sums differ, of the 378 in space 216.
 
 use nalgebra::SVector;
 
@@ -23,8 +23,8 @@ pub(super) const fn pair(a: usize, b: usize) -> usize {
     high * (high + 1) / 2 + low
 }
 
-/// Hands `matrix(i, j, mass)`, `j <= i`, what particles add to the entries of the consistent mass matrix. Only for
-/// bases that are products on grids wide enough ([`sums_apply`]).
+/// Hands `matrix(i, j, mass)`, `j <= i`, what particles add to the entries of the consistent mass matrix.
+/// Only for bases that are products on grids wide enough ([`sums_apply`]).
 #[inline(always)]
 pub(crate) fn sum_pairs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
@@ -138,7 +138,8 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
         }
     }
 
-    /// The same for points of `cell`, one after another; `matrix(i, j, sum)`, `j <= i`, takes what the cell before them adds.
+    /// The same for points of `cell`, one after another; `matrix(i, j, sum)`, `j <= i`, takes what the cell
+    /// before them adds.
     #[inline(always)]
     pub(super) fn add<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, N, V = V>, const N: usize>(
         &mut self,
@@ -185,7 +186,8 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
         );
     }
 
-    /// Where the lanes are those of four cells: hands over the sums of each cell that is not `left_out` and starts again.
+    /// Where the lanes are those of four cells: hands over the sums of each cell that is not `left_out` and
+    /// starts again.
     #[inline(always)]
     pub(super) fn spread<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, V = V>>(
         &mut self,
@@ -219,8 +221,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     /// Pairs of functions along an axis.
     const PAIRS_ALONG: usize = B::WIDTH * (B::WIDTH + 1) / 2;
 
-    /// Calls `f(i, j, number)` for each pair `j <= i` of a cell's DOFs, counted from the cell's first one, with the number of its
-    /// sum.
+    /// Calls `f(i, j, number)` for each pair `j <= i` of a cell's DOFs, counted from the cell's first one,
+    /// with the number of its sum.
     #[inline(always)]
     fn for_each_pair(&self, mut f: impl FnMut(usize, usize, usize)) {
         for row in 0..Self::ROWS {

@@ -1,8 +1,9 @@
 //! Sums at the DOFs of a cell, kept in lanes.
 //!
-//! What four particles add to a DOF is added up over the lanes only when no further particle will add to it: that takes
-//! longer than adding. Where the next cell is the neighbour along axis 0, only the first column of DOFs is done with; the
-//! others move up by one, which costs nothing, because they are read and written anyway.
+//! What four particles add to a DOF is added up over the lanes only when no further particle will add to it:
+//! that takes longer than adding. Where the next cell is the neighbour along axis 0, only the first column of
+//! DOFs is done with; the others move up by one, which costs nothing, because they are read and written
+//! anyway.
 
 use nalgebra::SVector;
 
@@ -18,8 +19,8 @@ const MOST_DOFS: usize = 64;
 /// Most numbers of a DOF: three scalars and four vectors, in fours.
 const MOST_NUMBERS: usize = 16;
 
-/// What particles add to a DOF: `S` scalars times its function, `C` vectors times its function, and `G` vectors that are
-/// tensors times its gradient.
+/// What particles add to a DOF: `S` scalars times its function, `C` vectors times its function, and `G`
+/// vectors that are tensors times its gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sum<T, const D: usize, const S: usize, const C: usize, const G: usize> {
     pub(crate) scalars: [T; S],
@@ -151,8 +152,8 @@ impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Su
         }
     }
 
-    /// Where the lanes are those of four cells: hands `sink(dof, sum)` the sums of each cell that is not `left_out`
-    /// and starts again.
+    /// Where the lanes are those of four cells: hands `sink(dof, sum)` the sums of each cell that is not
+    /// `left_out` and starts again.
     #[inline(always)]
     pub(super) fn spread<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, V = V>>(
         &mut self,

@@ -24,8 +24,8 @@ fn scene(method: Method, per_cell: usize) -> Scene {
     Scene::from_toml(text, &overrides).unwrap().with_method(method)
 }
 
-/// What was allocated and not freed by `build`, over what the stepper says; then steps, which must add nothing. On one thread:
-/// rayon itself may allocate when it wakes others.
+/// What was allocated and not freed by `build`, over what the stepper says; then steps, which must add
+/// nothing. On one thread: rayon itself may allocate when it wakes others.
 fn actual_over_said<const D: usize>(
     build: impl FnOnce() -> Box<dyn Simulation<D>> + Send,
     forcing: &Forcing<f64, D>,
@@ -112,9 +112,9 @@ fn sealed_surfaces_in_the_plane_take_what_is_said() {
     }
 }
 
-/// Seven numbers (two positions, displacement, velocity, stress, mass, volume), the number of the cell, and three
-/// numbers a DOF (mass, force, momentum): no lists of cells, no matrix, no liquid. Many particles are passed over in spans of
-/// 4096, whose sums take two numbers a DOF and little for each span.
+/// Seven numbers (two positions, displacement, velocity, stress, mass, volume), the number of the cell, and
+/// three numbers a DOF (mass, force, momentum): no lists of cells, no matrix, no liquid. Many particles are
+/// passed over in spans of 4096, whose sums take two numbers a DOF and little for each span.
 #[test]
 fn plain_one_phase_elasticity_carries_nothing_that_it_does_not_use() {
     let method = Method::new(Basis::Linear, ReconstructionKind::Shepard);
@@ -142,7 +142,8 @@ fn setting_up_needs_no_second_copy() {
     }
 }
 
-/// Nor does a whole run until its errors are computed: then the reference joins the particles, when all else is gone.
+/// Nor does a whole run until its errors are computed: then the reference joins the particles, when all else
+/// is gone.
 #[test]
 fn a_run_holds_one_copy_of_its_particles() {
     for method in Method::ALL {
@@ -153,7 +154,8 @@ fn a_run_holds_one_copy_of_its_particles() {
         let stepping = summary.bytes_per_particle * summary.particles as f64;
         // Particles, what the law tells of each, the reference's fields, one field of each at a time.
         let reporting = ((7 + 2 + 3 + 2) * 8 * summary.particles) as f64;
-        // Fits are asked for a stable step by a sample of at most 4096 of the particles, which is a stepper of its own.
+        // Fits are asked for a stable step by a sample of at most 4096 of the particles, which is a stepper
+        // of its own.
         let sample = match method.reconstruction {
             ReconstructionKind::Shepard => 0.0,
             _ => summary.bytes_per_particle * summary.particles.min(4096) as f64,

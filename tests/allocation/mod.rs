@@ -1,4 +1,5 @@
-//! Nothing is allocated by a step, also while particles cross cells; what a stepper says it takes is what it takes.
+//! Nothing is allocated by a step, also while particles cross cells; what a stepper says it takes is what it
+//! takes.
 
 mod memory;
 
@@ -125,8 +126,8 @@ fn no_step_with_virtual_points_allocates() {
     assert_eq!(steps.count_total, 0);
 }
 
-/// In the plane windows and the particles' order change too; 9216 particles make several spans. On one thread: a pool of several has
-/// a queue of its own, which takes memory now and then.
+/// In the plane windows and the particles' order change too; 9216 particles make several spans. On one
+/// thread: a pool of several has a queue of its own, which takes memory now and then.
 #[test]
 fn no_step_in_the_plane_allocates() {
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();

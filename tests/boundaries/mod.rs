@@ -47,8 +47,8 @@ fn stress_error(outcome: &Outcome, exact: impl Fn(f64) -> f64) -> f64 {
     (error / size).sqrt()
 }
 
-/// A wall that moves with v(t) = V sin^2(k t) sends the wave v(t - x/c) into the bar, c = 100 m/s, stress -rho c v. It has
-/// come to the middle when the run ends.
+/// A wall that moves with v(t) = V sin^2(k t) sends the wave v(t - x/c) into the bar, c = 100 m/s,
+/// stress -rho c v. It has come to the middle when the run ends.
 #[test]
 fn a_told_velocity_sends_the_exact_wave_into_the_bar() {
     let wall = "[[boundary]]\nface = \"x-min\"\nvelocity = [\"1e-3*sin(600*t)^2\"]\n";
@@ -161,8 +161,8 @@ fn held_bspline_ends_are_exact() {
     }
 }
 
-/// One particle, linear functions, no force: the wall's acceleration reaches it with the wall's share, and it moves with the
-/// interpolated velocity.
+/// One particle, linear functions, no force: the wall's acceleration reaches it with the wall's share, and it
+/// moves with the interpolated velocity.
 #[test]
 fn a_told_motion_reaches_the_particles_with_the_wall_s_share() {
     use materialpoint::basis::Linear;

@@ -181,8 +181,8 @@ fn check_names_the_largest_stable_step_and_what_limits_it() {
     assert!((critical - 1.39).abs() < 0.01, "{critical}");
     assert!(check["mechanism"].as_str().unwrap().contains("wave"));
     assert_eq!(check["stable"], true);
-    // Published TLS has no bound: a sample of the particles is iterated on, here all of them. The particles' speed, 0.8 m/s, counts:
-    // 1 / dt = c / (1.39 h) + v / h.
+    // Published TLS has no bound: a sample of the particles is iterated on, here all of them. The particles'
+    // speed, 0.8 m/s, counts: 1 / dt = c / (1.39 h) + v / h.
     let (output, _) = materialpoint("check-sample", &["check", "vibrating-bar-large", "--json"]);
     let check: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(check["critical_by"], "sample");
@@ -194,7 +194,8 @@ fn check_names_the_largest_stable_step_and_what_limits_it() {
     );
 }
 
-/// Linear functions along one axis: h / (c + |v|) = 0.05 / (4.472 + 0.8), by the bound. The default takes a tenth of it.
+/// Linear functions along one axis: h / (c + |v|) = 0.05 / (4.472 + 0.8), by the bound. The default takes a
+/// tenth of it.
 #[test]
 fn check_counts_the_steps_and_refuses_an_unstable_one() {
     let plain = [
@@ -240,8 +241,8 @@ fn check_counts_the_steps_and_refuses_an_unstable_one() {
     }
 }
 
-/// A step in which a wave crosses nearly a cell, where particles cross edges: energy out of nothing. The files are there, and the
-/// command says that they are no result.
+/// A step in which a wave crosses nearly a cell, where particles cross edges: energy out of nothing. The
+/// files are there, and the command says that they are no result.
 #[test]
 fn a_run_that_made_energy_writes_its_files_and_ends_with_status_three() {
     let arguments = [
@@ -579,8 +580,8 @@ fn an_unwritable_folder_ends_with_status_three_before_anything_is_computed() {
     assert_refused(&output, 3, &["a-file"]);
 }
 
-/// A time step ten times the critical one: the message names the step, the particle and the largest stable step, and what
-/// was written before stays readable.
+/// A time step ten times the critical one: the message names the step, the particle and the largest stable
+/// step, and what was written before stays readable.
 #[test]
 fn an_unstable_run_stops_with_the_step_the_particle_and_the_stable_step() {
     for method in ["shepard", "taylor", "relaxed-taylor", "spline"] {

@@ -47,8 +47,8 @@ fn run(scene: &[&str], folder: &Path, further: &[&str]) -> Output {
     output
 }
 
-/// The summary without what the clock says, and without the temporary files that a killed run had left: it may
-/// have been killed while it wrote one.
+/// The summary without what the clock says, and without the temporary files that a killed run had left: it
+/// may have been killed while it wrote one.
 fn summary(output: &Output) -> serde_json::Value {
     let mut summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let entries = summary.as_object_mut().unwrap();
@@ -114,8 +114,8 @@ fn written(folder: &Path) -> Option<SystemTime> {
     checkpoint.modified().ok()
 }
 
-/// Waits until so many more checkpoints have been seen, and then for a time: on a busy machine a clock alone would kill the run
-/// before it has begun.
+/// Waits until so many more checkpoints have been seen, and then for a time: on a busy machine a clock alone
+/// would kill the run before it has begun.
 fn wait(child: &mut Child, folder: &Path, checkpoints: usize, then: Duration) {
     for _ in 0..checkpoints {
         let before = written(folder);
@@ -130,8 +130,8 @@ fn wait(child: &mut Child, folder: &Path, checkpoints: usize, then: Duration) {
     std::thread::sleep(then);
 }
 
-/// Kills the run so many times, each time after none to three checkpoints and a random part of the time to the next one, and
-/// lets it end. It writes `checkpoints` in all.
+/// Kills the run so many times, each time after none to three checkpoints and a random part of the time to
+/// the next one, and lets it end. It writes `checkpoints` in all.
 fn survives(name: &str, scene: &[&str], kills: usize, checkpoints: usize) {
     let whole = fresh(&format!("{name}-whole"));
     let begun = Instant::now();
@@ -208,8 +208,8 @@ fn a_checkpoint_that_does_not_serve_ends_with_status_two() {
     refused(&[&resume[..], &[name]].concat(), &[name, "damaged or incomplete"]);
 }
 
-/// On a small file system, mounted in a name space of its own where that is allowed: the first checkpoint fits, there is no
-/// room for the second beside it.
+/// On a small file system, mounted in a name space of its own where that is allowed: the first checkpoint
+/// fits, there is no room for the second beside it.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_keeps_the_last_checkpoint() {

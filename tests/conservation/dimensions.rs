@@ -11,14 +11,15 @@ use materialpoint::stepper::{Conservation, FaceCondition, Forcing, Setup, Simula
 use nalgebra::SVector;
 
 const CELLS: usize = 5;
-/// Ends before a particle crosses a cell edge: with two particles left in a cell the line's fit has fewer functions
-/// (never more than particles) than the square's, which has six particles there.
+/// Ends before a particle crosses a cell edge: with two particles left in a cell the line's fit has fewer
+/// functions (never more than particles) than the square's, which has six particles there.
 const STEPS: usize = 20;
 const DT: f64 = 2e-3;
 const ROUND_OFF: f64 = 1e-14;
 
-/// A block of unit size between frictionless walls that moves along x only, with Poisson's ratio 0: the vibrating bar.
-/// Returns the displacements along x of the particles in the first row, and the conservation errors.
+/// A block of unit size between frictionless walls that moves along x only, with Poisson's ratio 0: the
+/// vibrating bar. Returns the displacements along x of the particles in the first row, and the conservation
+/// errors.
 fn bar<const D: usize, B, R>(basis: B, reconstruction: R, mass: VelocityMass) -> (Vec<f64>, Conservation<f64>)
 where
     B: BasisFamily<f64, D>,
@@ -85,8 +86,9 @@ fn the_bar_in_a_box_is_the_bar_on_a_line() {
     );
 }
 
-/// Not to round-off, and rightly so: a fit with a given mean is not the product of fits along the axes (the functions of
-/// y take part of what x leaves over), and Gauss forces over particle masses vary across the walls with B-splines.
+/// Not to round-off, and rightly so: a fit with a given mean is not the product of fits along the axes (the
+/// functions of y take part of what x leaves over), and Gauss forces over particle masses vary across the
+/// walls with B-splines.
 #[test]
 fn the_fits_and_the_consistent_mass_agree_to_the_scheme_s_accuracy() {
     for mass in [VelocityMass::Lumped, VelocityMass::Consistent] {

@@ -36,8 +36,8 @@ fn shepard_and_taylor_keep_mass_and_momentum_on_the_bars_and_the_column() {
     }
 }
 
-/// The spline keeps neither. Small bar (40 cells): momentum 1.79e-6. Large bar: mass 7.39e-7 and momentum 1.6e-5 with
-/// B-splines, 2.4e-4 and 3.2e-4 with linear functions.
+/// The spline keeps neither. Small bar (40 cells): momentum 1.79e-6. Large bar: mass 7.39e-7 and momentum
+/// 1.6e-5 with B-splines, 2.4e-4 and 3.2e-4 with linear functions.
 #[test]
 fn the_spline_loses_what_the_tables_say() {
     let losses = |scene, basis| {

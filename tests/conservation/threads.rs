@@ -1,6 +1,7 @@
 //! Any number of threads gives the bits of one.
 //!
-//! Particles enough for many spans, in order along the bar and shuffled (then one span serves), crossing cells as they move.
+//! Particles enough for many spans, in order along the bar and shuffled (then one span serves), crossing
+//! cells as they move.
 
 mod entering;
 
@@ -15,7 +16,8 @@ use materialpoint::reconstruction::Reconstruction;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
 use nalgebra::vector;
 
-/// Round-off of sums of 21 000 momenta, which pass no tree: a few times the machine epsilon times the root of their number.
+/// Round-off of sums of 21 000 momenta, which pass no tree: a few times the machine epsilon times the root of
+/// their number.
 const ROUND_OFF: f64 = 1e-13;
 const CELLS: usize = 3000;
 const PER_CELL: usize = 7;

@@ -1,9 +1,10 @@
-//! Column compaction (journal section 6.2): H = 50 m, E = 1e6 Pa, body force from 0 to -200 N/kg over 0.5 s, bottom fixed,
-//! top free, 50 cells, 20 particles per cell, 5000 steps of 1e-4 s, Hill's law.
+//! Column compaction (journal section 6.2): H = 50 m, E = 1e6 Pa, body force from 0 to -200 N/kg over 0.5 s,
+//! bottom fixed, top free, 50 cells, 20 particles per cell, 5000 steps of 1e-4 s, Hill's law.
 //!
-//! Expected: relative L2 errors of the stress against the static and the converged dynamic solution, as measured by
-//! an independent prototype. Against the static one the better methods measure the residual vibration of 3.6e-3. The prototype's
-//! fits go on to the end of the cell that the top lies in; ours end at the top, which spares B-splines a part of their dynamic error.
+//! Expected: relative L2 errors of the stress against the static and the converged dynamic solution, as
+//! measured by an independent prototype. Against the static one the better methods measure the residual
+//! vibration of 3.6e-3. The prototype's fits go on to the end of the cell that the top lies in; ours end at
+//! the top, which spares B-splines a part of their dynamic error.
 
 use super::*;
 

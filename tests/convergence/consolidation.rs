@@ -12,7 +12,8 @@ const FIELDS: [&str; 5] = [
     "pore_pressure",
 ];
 
-/// 20 steps of 1e-10 s show the initial data alone: RMS errors at 20 and 160 cells of what the DOFs interpolate.
+/// 20 steps of 1e-10 s show the initial data alone: RMS errors at 20 and 160 cells of what the DOFs
+/// interpolate.
 #[test]
 fn initial_data_from_the_dofs_have_the_order_of_the_basis() {
     let linear = [
@@ -55,8 +56,8 @@ fn initial_data_from_the_dofs_have_the_order_of_the_basis() {
     }
 }
 
-/// Half a second of draining from the exact series at 0.5 s: the scene is the run that `two_phase::consolidation` holds for all
-/// nine methods.
+/// Half a second of draining from the exact series at 0.5 s: the scene is the run that
+/// `two_phase::consolidation` holds for all nine methods.
 #[test]
 fn the_scene_is_the_run_that_measures_the_method() {
     for (method, pressure, stress) in [
@@ -101,8 +102,9 @@ fn a_saturated_column_comes_to_rest_under_its_weight() {
     assert!(found["liquid_velocity"].max < 1e-6);
 }
 
-/// Large strain, from the start of the load on, on a coarse grid: against the converged solution of the same equations, and
-/// against Xie and Leo's, which knows neither inertia nor the liquid's compression and is therefore the farther one.
+/// Large strain, from the start of the load on, on a coarse grid: against the converged solution of the same
+/// equations, and against Xie and Leo's, which knows neither inertia nor the liquid's compression and is
+/// therefore the farther one.
 #[test]
 fn large_strain_follows_both_of_its_references() {
     let method = Method::new(BSPLINE, TAYLOR);
@@ -126,7 +128,8 @@ fn large_strain_follows_both_of_its_references() {
     }
 }
 
-/// Hill's rate with a constant permeability, the report's own model at large strain: against the converged solution.
+/// Hill's rate with a constant permeability, the report's own model at large strain: against the converged
+/// solution.
 #[test]
 fn large_strain_with_hills_rate_follows_the_converged_solution() {
     let set = [

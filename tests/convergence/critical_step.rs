@@ -1,7 +1,8 @@
 //! The critical time step: the eigenvalue estimate against the running scheme.
 //!
-//! The small bar with a tiny amplitude (no particle crosses), 20 cells, 12 particles per cell, 3000 steps: at 0.97 of the
-//! estimate the energy stays below twice the initial, at 1.05 of it the run blows up or leaves the grid. All methods, and sub-points.
+//! The small bar with a tiny amplitude (no particle crosses), 20 cells, 12 particles per cell, 3000 steps: at
+//! 0.97 of the estimate the energy stays below twice the initial, at 1.05 of it the run blows up or leaves
+//! the grid. All methods, and sub-points.
 
 use super::*;
 use materialpoint_command::run::critical_step;

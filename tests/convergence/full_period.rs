@@ -1,11 +1,13 @@
-//! Vibrating bar, small strain, one full period 2 H sqrt(rho/E) = 33.8 ms: measures the motion and not the mapping alone.
+//! Vibrating bar, small strain, one full period 2 H sqrt(rho/E) = 33.8 ms: measures the motion and not the
+//! mapping alone.
 //!
-//! Steps of 1/8000 of the period, so that the time error stays below the spatial one; 12 particles per cell; exact
-//! solution. After a whole period displacement and stress pass through zero: their errors are those of the phase, second
-//! order for all nine methods. With 40 cells the particles next to the edges cross them (u = 1.5 mm against 1.0 mm), and
-//! the linear functions, whose gradients jump there, lose the order; published Taylor least squares soften that, the
-//! spline and the smooth gradients do not feel it. The velocity error stays near 7e-4 m/s or above: at 0.5 % strain a
-//! small-strain law on particles that move is not the linear equation any more.
+//! Steps of 1/8000 of the period, so that the time error stays below the spatial one; 12 particles per cell;
+//! exact solution. After a whole period displacement and stress pass through zero: their errors are those of
+//! the phase, second order for all nine methods. With 40 cells the particles next to the edges cross them (u
+//! = 1.5 mm against 1.0 mm), and the linear functions, whose gradients jump there, lose the order; published
+//! Taylor least squares soften that, the spline and the smooth gradients do not feel it. The velocity error
+//! stays near 7e-4 m/s or above: at 0.5 % strain a small-strain law on particles that move is not the linear
+//! equation any more.
 //!
 //! Expected orders: measured with this code, reported in `docs/verification/one-phase.md`.
 
@@ -49,8 +51,8 @@ fn nine_methods_keep_their_orders_over_a_period() {
     }
 }
 
-/// The scene for studies runs an eighth longer, so that errors can be relative to something. Errors: measured with this code,
-/// in `docs/verification/speed-and-error.md`.
+/// The scene for studies runs an eighth longer, so that errors can be relative to something. Errors: measured
+/// with this code, in `docs/verification/speed-and-error.md`.
 #[test]
 fn the_scene_of_one_period_follows_nine_eighths_of_it() {
     let period = 2.0 * (2e3_f64 / 7e6).sqrt();

@@ -1,5 +1,6 @@
-//! Vibrating bar, large strain (journal section 6.1, Figure 9): E = 4e4 Pa, v0 = 0.8 m/s, 20 cells, 8 particles per cell,
-//! 1000 steps of 1e-4 s; reference: the converged Lagrangian solution with the exact integral of Hill's law.
+//! Vibrating bar, large strain (journal section 6.1, Figure 9): E = 4e4 Pa, v0 = 0.8 m/s, 20 cells, 8
+//! particles per cell, 1000 steps of 1e-4 s; reference: the converged Lagrangian solution with the exact
+//! integral of Hill's law.
 //!
 //! Expected: relative L2 errors of the stress at the particles as measured by an independent prototype.
 
@@ -32,7 +33,8 @@ fn particles_of_plain_mpm_cross_cells_as_often_as_the_prototype_counted() {
     assert_eq!(plain.grid_crossings, 117);
 }
 
-/// Taylor least squares against plain MPM: the papers say 9.9 times with B-splines and 7.8 times with dual domain.
+/// Taylor least squares against plain MPM: the papers say 9.9 times with B-splines and 7.8 times with dual
+/// domain.
 #[test]
 fn taylor_least_squares_reduce_the_error_of_plain_mpm_as_the_papers_say() {
     let error = |basis, reconstruction| {

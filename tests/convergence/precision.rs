@@ -1,8 +1,8 @@
 //! Single precision: the same scheme, seven digits.
 //!
-//! The large bar's errors are those of the scheme, so f32 must show them too (within 3 %), and conservation holds to the
-//! round-off of f32 over 160 particles and 1000 steps. That f32 was used at all shows in the conservation errors, which are
-//! far above those of f64.
+//! The large bar's errors are those of the scheme, so f32 must show them too (within 3 %), and conservation
+//! holds to the round-off of f32 over 160 particles and 1000 steps. That f32 was used at all shows in the
+//! conservation errors, which are far above those of f64.
 
 use super::*;
 

@@ -1,11 +1,12 @@
-//! Relaxed Taylor least squares: accuracy, energy in long runs, free surfaces; with 8, 4, 3 and 2 particles per cell.
+//! Relaxed Taylor least squares: accuracy, energy in long runs, free surfaces; with 8, 4, 3 and 2 particles
+//! per cell.
 //!
-//! Large bar: relative L2 error of the stress at 0.1 s against the converged solution, as in `large_bar`. Column: against
-//! the dynamic solution, as in `column`. Smooth run: the large bar with v0 = 0.08 m/s, 80 cells, to 8 s. It stays smooth until
-//! 7.96 s, so the exact energy is constant; particles cross cell edges all the time, and published TLS gains energy without
-//! bound there. The figures are this library's own (`docs/theory/relaxed-tls.md`); a prototype without the fits
-//! through neighbours and without free surfaces had 8.2e-3, 2.4e-3, 5.75e-4 on the bar and 6.6e-3, 1.6e-3, 1.6e-4
-//! on the column.
+//! Large bar: relative L2 error of the stress at 0.1 s against the converged solution, as in `large_bar`.
+//! Column: against the dynamic solution, as in `column`. Smooth run: the large bar with v0 = 0.08 m/s, 80
+//! cells, to 8 s. It stays smooth until 7.96 s, so the exact energy is constant; particles cross cell edges
+//! all the time, and published TLS gains energy without bound there. The figures are this library's own
+//! (`docs/theory/relaxed-tls.md`); a prototype without the fits through neighbours and without free surfaces
+//! had 8.2e-3, 2.4e-3, 5.75e-4 on the bar and 6.6e-3, 1.6e-3, 1.6e-4 on the column.
 
 use super::*;
 
@@ -18,8 +19,8 @@ const BAR: [(Basis, [f64; 4]); 3] = [
     (BSPLINE, [3.25e-4, 3.33e-4, 3.35e-4, 4.11e-4]),
 ];
 
-/// Basis; column with 20 and with 4 particles per cell on its own grid, and with 100 cells, where its top leaves a cell half
-/// empty.
+/// Basis; column with 20 and with 4 particles per cell on its own grid, and with 100 cells, where its top
+/// leaves a cell half empty.
 const COLUMN: [(Basis, [f64; 3]); 3] = [
     (LINEAR, [1.65e-4, 1.56e-4, 7.54e-5]),
     (DUAL_DOMAIN, [1.37e-4, 1.41e-4, 4.38e-5]),
@@ -56,7 +57,8 @@ fn a_free_surface_may_leave_cells_half_empty() {
     }
 }
 
-/// Third order with B-splines, once the error of the step (first order, 1.4e-4 with 1e-4 s) is out of the way.
+/// Third order with B-splines, once the error of the step (first order, 1.4e-4 with 1e-4 s) is out of the
+/// way.
 #[test]
 fn the_order_is_that_of_the_basis() {
     let error = |basis, cells: &str| {
@@ -69,7 +71,8 @@ fn the_order_is_that_of_the_basis() {
     }
 }
 
-/// The relaxation is a rate: a step of a fifth leaves the error as it is, within what the step itself contributes.
+/// The relaxation is a rate: a step of a fifth leaves the error as it is, within what the step itself
+/// contributes.
 #[test]
 fn smaller_steps_do_not_relax_more() {
     for (basis, errors) in BAR {
@@ -109,7 +112,8 @@ fn swing(method: Method, per_cell: usize, (velocity, cells): (f64, usize), end: 
     summary("vibrating-bar-large", method, &set)
 }
 
-/// Within 0.98 and 1.003 at all times up to 8 s, where the published method has 1.17 (dual domain, lumped) to 13.5 (linear).
+/// Within 0.98 and 1.003 at all times up to 8 s, where the published method has 1.17 (dual domain, lumped) to
+/// 13.5 (linear).
 #[test]
 fn the_smooth_run_keeps_its_energy_where_the_published_method_gains() {
     for (basis, ..) in BAR {
@@ -126,8 +130,9 @@ fn the_smooth_run_keeps_its_energy_where_the_published_method_gains() {
     assert_close("published, linear", published.highest_ratio.unwrap(), 1.34, 0.03);
 }
 
-/// Particles that swing to and fro without leaving their cells, and few in large cells: a linear basis gained where slopes from the
-/// neighbours turned about the middle of the particles instead of the cell (1.06, 1.07, 2.8 and 3.2).
+/// Particles that swing to and fro without leaving their cells, and few in large cells: a linear basis gained
+/// where slopes from the neighbours turned about the middle of the particles instead of the cell (1.06, 1.07,
+/// 2.8 and 3.2).
 #[test]
 fn particles_off_the_middle_of_their_cells_gain_no_energy() {
     for (per_cell, velocity, cells) in [(4, 0.02, 80), (3, 0.04, 80), (2, 0.04, 80), (2, 0.08, 40)] {
@@ -146,7 +151,8 @@ fn particles_off_the_middle_of_their_cells_gain_no_energy() {
     }
 }
 
-/// Shocks from 0.79 s on: the exact energy falls, so more than the round-off of the half step that velocities lag is a gain.
+/// Shocks from 0.79 s on: the exact energy falls, so more than the round-off of the half step that velocities
+/// lag is a gain.
 #[test]
 fn the_bar_with_shocks_never_gains_energy() {
     for (basis, ..) in BAR {

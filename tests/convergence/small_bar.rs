@@ -1,8 +1,9 @@
 //! Vibrating bar, small strain (journal section 6.1, Figure 6): fixed ends, v0 = 0.28 m/s, E = 7 MPa,
 //! rho = 2000 kg/m3, 19 steps of 1e-7 s, 12 particles per cell; exact solution.
 //!
-//! Expected: the figures and orders measured by an independent prototype. The run is so short that it measures the
-//! mapping and not the motion; `full_period` measures that. Orders are those between 20 and 40 cells.
+//! Expected: the figures and orders measured by an independent prototype. The run is so short that it
+//! measures the mapping and not the motion; `full_period` measures that. Orders are those between 20 and 40
+//! cells.
 
 use super::*;
 
@@ -80,9 +81,10 @@ fn nine_methods_have_the_errors_and_orders_of_the_table() {
     }
 }
 
-/// A gradient of quadratics at arbitrary points cannot converge faster than second order, whatever the papers say;
-/// degree 3 gains the order. The last of it is lost to the cells at the ends, where the errors of neighbouring fits no longer
-/// cancel (order 2 there, 2.5 in the root mean square) and, with the published treatment, where the held DOF is overwritten.
+/// A gradient of quadratics at arbitrary points cannot converge faster than second order, whatever the papers
+/// say; degree 3 gains the order. The last of it is lost to the cells at the ends, where the errors of
+/// neighbouring fits no longer cancel (order 2 there, 2.5 in the root mean square) and, with the published
+/// treatment, where the held DOF is overwritten.
 #[test]
 fn degree_three_gains_an_order_in_the_stress() {
     let runs = |degree, reconstruction, mass: &str| {

@@ -1,4 +1,5 @@
-//! Dual domain with sub-points (Dhakal & Zhang 2016, journal Table 8): S sub-points in each particle's domain for the force.
+//! Dual domain with sub-points (Dhakal & Zhang 2016, journal Table 8): S sub-points in each particle's domain
+//! for the force.
 //!
 //! Expected: no independent figures exist for the printed gradient (the journal's belong to another one, see
 //! `docs/verification/sub-points.md`), so the bounds are this code's own, from both sides. What is
@@ -47,8 +48,8 @@ fn the_column_does_not_change_with_the_number_of_sub_points() {
     }
 }
 
-/// Few particles per cell are what sub-points are for: on the large bar they take more than two thirds off the error of two
-/// particles per cell, and nothing off that of eight.
+/// Few particles per cell are what sub-points are for: on the large bar they take more than two thirds off
+/// the error of two particles per cell, and nothing off that of eight.
 #[test]
 fn few_particles_per_cell_gain_and_many_do_not() {
     for (per_cell, plain, two, sixteen) in [(2, 2.92e-2, 8.94e-3, 7.92e-3), (8, 4.76e-3, 4.72e-3, 4.72e-3)] {
@@ -66,8 +67,9 @@ fn few_particles_per_cell_gain_and_many_do_not() {
     }
 }
 
-/// The strain is taken at the particle and the force over its domain, so the work of the two differs: with one particle per
-/// cell the large bar gains 2 to 3 % of energy in 0.1 s, where plain dual domain gains 0.1 % and less.
+/// The strain is taken at the particle and the force over its domain, so the work of the two differs: with
+/// one particle per cell the large bar gains 2 to 3 % of energy in 0.1 s, where plain dual domain gains 0.1 %
+/// and less.
 #[test]
 fn one_particle_per_cell_gains_energy() {
     let gain = |sub_points| {
@@ -82,7 +84,8 @@ fn one_particle_per_cell_gains_energy() {
     }
 }
 
-/// Consolidation, 20 cells, 4 particles per cell: the effective stress as with plain dual domain, and both phases kept.
+/// Consolidation, 20 cells, 4 particles per cell: the effective stress as with plain dual domain, and both
+/// phases kept.
 #[test]
 fn two_phases_take_sub_points_too() {
     let found = summary("consolidation", Method::sub_points(4), &[]);

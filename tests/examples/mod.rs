@@ -35,7 +35,8 @@ fn the_bar_meets_the_exact_solution() {
     assert!((3e-3..5e-3).contains(&error), "{error:e}");
 }
 
-/// Static strain of the pulled bar: ln J = sigma/E = 0.01, so u/L = e^0.01 - 1 = 0.01005; a sudden load swings about it.
+/// Static strain of the pulled bar: ln J = sigma/E = 0.01, so u/L = e^0.01 - 1 = 0.01005; a sudden load
+/// swings about it.
 #[test]
 fn the_pulled_bar_swings_about_its_static_strain() {
     let mean = own_law::run().unwrap();
@@ -48,8 +49,8 @@ fn the_own_basis_keeps_the_energy() {
     assert!((1.0..1.01).contains(&highest), "{highest}");
 }
 
-/// With the weights of the gradient exchanged dual domain is as bad as the papers' (4.4555e-2) and sub-points mend it as theirs do
-/// (1.5236e-2 with 16); as printed it is ten times better, and they change nothing.
+/// With the weights of the gradient exchanged dual domain is as bad as the papers' (4.4555e-2) and sub-points
+/// mend it as theirs do (1.5236e-2 with 16); as printed it is ten times better, and they change nothing.
 #[test]
 fn sub_points_mend_a_gradient_that_jumps_and_not_one_that_does_not() {
     let (taylor, rows) = sub_points::run(&[1, 16], 1).unwrap();
@@ -70,8 +71,8 @@ fn six_functions_fit_the_field() {
     assert!(quality.integral < 1e-15, "{:e}", quality.integral);
 }
 
-/// The journal's figures 4 and 5: virtual points bring the cell's error from that of a line to little above that of the cubic spline,
-/// and the integral stays (the spline loses 2.6e-3 of it).
+/// The journal's figures 4 and 5: virtual points bring the cell's error from that of a line to little above
+/// that of the cubic spline, and the integral stays (the spline loses 2.6e-3 of it).
 #[test]
 fn virtual_points_mend_the_cell_of_two_points() {
     let found = virtual_points::run().unwrap();
@@ -605,7 +606,8 @@ fn the_thermal_example_prints_what_theory_says() {
     assert!((found.swing.temperature - 2.701e-3).abs() < 1e-6, "{found:?}");
 }
 
-/// What a page shows of an example stands there word for word, and the README's program is the library's first one.
+/// What a page shows of an example stands there word for word, and the README's program is the library's
+/// first one.
 #[test]
 fn the_pages_show_the_examples_as_they_are() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -630,7 +632,8 @@ fn the_pages_show_the_examples_as_they_are() {
     }
 }
 
-/// The page's program keeps the prose and fills the part between the markers; its picture is light enough for the repository.
+/// The page's program keeps the prose and fills the part between the markers; its picture is light enough for
+/// the repository.
 #[test]
 fn a_part_of_the_page_on_speed_and_error_is_written_anew() {
     use materialpoint_command::output::Folder;
@@ -689,7 +692,8 @@ fn the_page_on_speed_and_error_is_complete() {
     }
 }
 
-/// A short run of two methods: both tables are filled in, the run that stops says so, and nothing else of the page changes.
+/// A short run of two methods: both tables are filled in, the run that stops says so, and nothing else of the
+/// page changes.
 #[test]
 fn a_part_of_the_page_on_long_runs_is_written_anew() {
     use long_runs::{Case, SMOOTH, Variant, report};

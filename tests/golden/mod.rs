@@ -1,8 +1,9 @@
-//! Short runs of every method, dimension, phase and scalar through the command, with checksums of what they write: the
-//! gate for changes that must change nothing but round-off.
+//! Short runs of every method, dimension, phase and scalar through the command, with checksums of what they
+//! write: the gate for changes that must change nothing but round-off.
 //!
-//! `cargo test --release golden::every_run_is_as_recorded -- --ignored` compares, and where figures are meant to change
-//! `cargo test --release golden::record -- --ignored` records anew; the commit says which runs changed and why.
+//! `cargo test --release golden::every_run_is_as_recorded -- --ignored` compares, and where figures are meant
+//! to change `cargo test --release golden::record -- --ignored` records anew; the commit says which runs
+//! changed and why.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -69,7 +69,8 @@ impl<L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Copy + 'static> Bodies<L> 
         }
     }
 
-    /// With a body from `start` to `end`, evenly filled; `surfaces` says whether its ends are known to be surfaces.
+    /// With a body from `start` to `end`, evenly filled; `surfaces` says whether its ends are known to be
+    /// surfaces.
     pub fn with_body(mut self, [start, end]: [f64; 2], count: usize, density: f64, surfaces: bool) -> Self {
         let volume = (end - start) / count as f64;
         let points: Vec<_> = (0..count)

@@ -1,23 +1,24 @@
 //! The predicted critical step against the limit of the running scheme, on layouts that fit no grid.
 //!
-//! A linear elastic bar at small strain, eight cells long, both ends free, shifted by a share of a cell against the
-//! grid, so that its end cells are partly filled; 2, 4, 8 or 16 particles per cell. The particles start with velocities
-//! without any pattern, 1e-9 of the wave's speed, so that none moves by 1e-5 of a cell, the scheme is linear, and its
-//! limit depends on the layout alone. No particle lies on a cell edge, where linear functions have two slopes and the
-//! scheme is none of linear maps.
+//! A linear elastic bar at small strain, eight cells long, both ends free, shifted by a share of a cell
+//! against the grid, so that its end cells are partly filled; 2, 4, 8 or 16 particles per cell. The particles
+//! start with velocities without any pattern, 1e-9 of the wave's speed, so that none moves by 1e-5 of a cell,
+//! the scheme is linear, and its limit depends on the layout alone. No particle lies on a cell edge, where
+//! linear functions have two slopes and the scheme is none of linear maps.
 //!
 //! There are two ways to grow, and both are measured as an energy that rises 1e4 times:
-//! * above the critical step, by 1.09^2 a step at 1.002 of it: within 300 steps. The observed limit is the largest step
-//!   without. Below it Euler-Cromer raises the energy by 1 / (1 - (step / limit)^2) at most, tenfold at 0.95;
-//! * at any step, slowly: fits that do not follow from the mass behind them have complex eigenvalues (published TLS,
-//!   the spline). A layout lasts if 3000 steps of half the prediction do not show it; on one that does not, no step is
-//!   critical.
+//! * above the critical step, by 1.09^2 a step at 1.002 of it: within 300 steps. The observed limit is the
+//!   largest step without. Below it Euler-Cromer raises the energy by 1 / (1 - (step / limit)^2) at most,
+//!   tenfold at 0.95;
+//! * at any step, slowly: fits that do not follow from the mass behind them have complex eigenvalues
+//!   (published TLS, the spline). A layout lasts if 3000 steps of half the prediction do not show it; on one
+//!   that does not, no step is critical.
 //!
-//! Expected: Shepard and relaxed TLS last on every layout, and the observed limit is the predicted one, since that is
-//! the largest eigenvalue of the same linear map, within 0.3 % or what 300 steps and the bisection can tell. Published
-//! TLS and the spline last on some of the layouts (`docs/verification/stability.md`, printed by the table
-//! here), and have the predicted limit there, but for a few layouts of the spline that last at half the step
-//! and grow fast at 0.7 to 0.9 of it.
+//! Expected: Shepard and relaxed TLS last on every layout, and the observed limit is the predicted one, since
+//! that is the largest eigenvalue of the same linear map, within 0.3 % or what 300 steps and the bisection
+//! can tell. Published TLS and the spline last on some of the layouts (`docs/verification/stability.md`,
+//! printed by the table here), and have the predicted limit there, but for a few layouts of the spline that
+//! last at half the step and grow fast at 0.7 to 0.9 of it.
 
 use materialpoint::method::{Method, ReconstructionKind};
 use materialpoint::stepper::Forcing;
@@ -78,7 +79,8 @@ fn has_an_energy(method: Method) -> bool {
     matches!(method.reconstruction, Shepard | RelaxedTaylor)
 }
 
-/// Offsets of which some hide a mode that the prediction must find: those of the end cells grow slowly out of the start.
+/// Offsets of which some hide a mode that the prediction must find: those of the end cells grow slowly out of
+/// the start.
 const HIDING: [usize; 4] = [0, 5, 11, 16];
 
 fn layouts(ks: &[usize]) -> impl Iterator<Item = (usize, f64)> {
@@ -150,8 +152,8 @@ impl Found {
     }
 }
 
-/// Of the 16 layouts: how many do not last (give or take one that is just about to show it). With fits that go on to the ends of
-/// cells, where scenes did not name the ends of a body, they were 5, 4, 14, 3, 15, 4.
+/// Of the 16 layouts: how many do not last (give or take one that is just about to show it). With fits that
+/// go on to the ends of cells, where scenes did not name the ends of a body, they were 5, 4, 14, 3, 15, 4.
 const PASSING: [(usize, usize); 6] = [(1, 2), (2, 1), (4, 14), (5, 3), (7, 11), (8, 0)];
 
 #[test]

@@ -1,14 +1,15 @@
 //! Taylor fits of cells whose particles hardly define one.
 //!
-//! Source: the papers ask for fewer functions where the particles' layout makes some of them dependent (journal
-//! section 5.3, figure 4). Goal: on every such layout the fit is finite, keeps mass and momentum, reproduces a
-//! constant, uses as many functions as geometry allows, and has the digits of its scalar. One cell `[0.3, 1]^D`, so
-//! that local coordinates are rounded; densities and velocities differ from particle to particle without pattern. The
-//! judge of the digits is the same fit in [`DoubleDouble`] on the same positions.
+//! Source: the papers ask for fewer functions where the particles' layout makes some of them dependent
+//! (journal section 5.3, figure 4). Goal: on every such layout the fit is finite, keeps mass and momentum,
+//! reproduces a constant, uses as many functions as geometry allows, and has the digits of its scalar. One
+//! cell `[0.3, 1]^D`, so that local coordinates are rounded; densities and velocities differ from particle to
+//! particle without pattern. The judge of the digits is the same fit in [`DoubleDouble`] on the same
+//! positions.
 //!
-//! Figures: with the default tolerance a function of which 2 % is left costs at most two of sixteen digits, so 1e-13;
-//! what is lost of mass and momentum is round-off of a few sums, 1e-14 at most. Without a tolerance the digits go
-//! with the gap.
+//! Figures: with the default tolerance a function of which 2 % is left costs at most two of sixteen digits,
+//! so 1e-13; what is lost of mass and momentum is round-off of a few sums, 1e-14 at most. Without a tolerance
+//! the digits go with the gap.
 
 use std::f64::consts::PI;
 
@@ -34,7 +35,8 @@ struct Body<T: Scalar, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Body<T, D> {
-    /// `places` are fractions of the cell. Positions are rounded to `f64` whatever the scalar, to be the same in all.
+    /// `places` are fractions of the cell. Positions are rounded to `f64` whatever the scalar, to be the same
+    /// in all.
     fn new(places: &[[f64; D]]) -> Self {
         let bound = |x: f64| SVector::repeat(T::lit(x));
         let grid = Grid::new(bound(LOW), bound(HIGH), [1; D]).unwrap();
@@ -114,7 +116,8 @@ fn disagreement<const D: usize, const NB: usize>(places: &[[f64; D]], tolerance:
     (0..2).fold(0.0, |m, k| m.max(difference(&found[k], &judged[k])))
 }
 
-/// Mass and momentum that the stream brings, against those that the particles hold, relative to the sums of sizes.
+/// Mass and momentum that the stream brings, against those that the particles hold, relative to the sums of
+/// sizes.
 fn lost<const D: usize, const NB: usize>(body: &Body<f64, D>) -> f64 {
     let (mut held, mut sizes) = ([0.0; 4], [0.0; 4]);
     let parts = |q: &MassMomentum<f64, D>| {
@@ -203,9 +206,9 @@ fn few_and_coincident_particles_on_a_line() {
     check::<1, 3>("both edges", &[[0.0], [1.0], [1.0], [0.0]], [2, 2]);
 }
 
-/// Of a pair the slope is left with the gap `g`, in units of the cell: less than 2 % of `1/sqrt 3`. With a particle
-/// beside it the curvature is left with `g/sqrt 6` or so, root mean square: 2 % of `1/sqrt 45` are reached between
-/// the first two gaps.
+/// Of a pair the slope is left with the gap `g`, in units of the cell: less than 2 % of `1/sqrt 3`. With a
+/// particle beside it the curvature is left with `g/sqrt 6` or so, root mean square: 2 % of `1/sqrt 45` are
+/// reached between the first two gaps.
 #[test]
 fn nearly_coincident_particles_on_a_line() {
     for gap in gaps() {
@@ -231,8 +234,8 @@ fn particles_on_an_edge_or_a_line_in_the_plane() {
     check::<2, 6>("lone in a corner", &[[1.0, 0.0]], [1, 0]);
 }
 
-/// On a conic one combination of the six functions is zero. With the mean given the constant is not among them, so five
-/// are independent, unless the conic's equation has no constant: `s^2 + t^2 = 2/3`.
+/// On a conic one combination of the six functions is zero. With the mean given the constant is not among
+/// them, so five are independent, unless the conic's equation has no constant: `s^2 + t^2 = 2/3`.
 #[test]
 fn particles_on_a_conic() {
     let circle = |r: f64| {
@@ -282,9 +285,9 @@ fn nearly_coincident_particles_in_the_plane() {
     }
 }
 
-/// With next to no tolerance every function is fitted that arithmetic can tell from the others. The condition number
-/// is then the inverse of the gap, and round-off counts it once: values without pattern and a constant keep nine
-/// digits down to a gap of 1e-6.
+/// With next to no tolerance every function is fitted that arithmetic can tell from the others. The condition
+/// number is then the inverse of the gap, and round-off counts it once: values without pattern and a constant
+/// keep nine digits down to a gap of 1e-6.
 #[test]
 fn digits_that_survive_without_a_tolerance() {
     const NONE: f64 = 1e-14;
@@ -318,7 +321,8 @@ fn text(errors: &[[f64; 2]]) -> String {
         .collect()
 }
 
-/// A fit of `sin x + 2` in `[pi, 2 pi]`, its mean exact: coefficients, largest error and root mean square error.
+/// A fit of `sin x + 2` in `[pi, 2 pi]`, its mean exact: coefficients, largest error and root mean square
+/// error.
 fn papers_cell(points: &[f64]) -> ([f64; 3], f64, f64) {
     let field = |x: f64| x.sin() + 2.0;
     let grid = Grid::new(vector![0.0], vector![4.0 * PI], [4]).unwrap();
@@ -341,9 +345,9 @@ fn papers_cell(points: &[f64]) -> ([f64; 3], f64, f64) {
     (fit, largest, (square / 2001.0).sqrt())
 }
 
-/// The large bar with three particles per cell: as they move cells are left with two, and neighbours lend them points. Fewer functions
-/// or virtual points, mass and momentum stay. Here the stress gains; it does not everywhere
-/// (`docs/verification/stability.md`), which is why they are not the default.
+/// The large bar with three particles per cell: as they move cells are left with two, and neighbours lend
+/// them points. Fewer functions or virtual points, mass and momentum stay. Here the stress gains; it does not
+/// everywhere (`docs/verification/stability.md`), which is why they are not the default.
 #[test]
 fn virtual_points_on_the_large_bar() {
     use crate::convergence::{BSPLINE, LINEAR, TAYLOR, summary};
@@ -369,10 +373,11 @@ fn virtual_points_on_the_large_bar() {
     }
 }
 
-/// The papers' figure 4: points at pi and 5 pi/3 only, where the quadratic function is -1/3 of the linear one. With
-/// fewer functions the cell is a line that keeps the integral; "it will lower the accuracy", and does: the half
-/// wave's right end is missed by 1.28 of its height, where a third point at 2 pi (their figure 5 puts a virtual one
-/// there; here it is the field's own value) leaves 0.04. Singular functions fitted all the same would have no bound.
+/// The papers' figure 4: points at pi and 5 pi/3 only, where the quadratic function is -1/3 of the linear
+/// one. With fewer functions the cell is a line that keeps the integral; "it will lower the accuracy", and
+/// does: the half wave's right end is missed by 1.28 of its height, where a third point at 2 pi (their figure
+/// 5 puts a virtual one there; here it is the field's own value) leaves 0.04. Singular functions fitted all
+/// the same would have no bound.
 #[test]
 fn the_papers_cell_of_two_points() {
     let (fit, largest, square) = papers_cell(&[PI, 5.0 * PI / 3.0]);

@@ -1,11 +1,12 @@
 //! A scalar of twice the digits: the judge of what `f64` loses.
 //!
-//! A number is the unevaluated sum of two `f64`, `hi + lo` with `|lo| <= ulp(hi)/2`: 106 bits, 32 decimal digits.
-//! Sums and products after Dekker (1971) and Knuth; `mul_add` gives the error of a product exactly. The four
-//! operations and the square root are good to a few units of 2^-104.
+//! A number is the unevaluated sum of two `f64`, `hi + lo` with `|lo| <= ulp(hi)/2`: 106 bits, 32 decimal
+//! digits. Sums and products after Dekker (1971) and Knuth; `mul_add` gives the error of a product exactly.
+//! The four operations and the square root are good to a few units of 2^-104.
 //!
-//! It is a `RealField`, so every kernel of the crate can run in it. Transcendental functions do not exist: one that
-//! fell back to `f64` would bring sixteen digits where thirty are believed, so asking for one panics and names it.
+//! It is a `RealField`, so every kernel of the crate can run in it. Transcendental functions do not exist:
+//! one that fell back to `f64` would bring sixteen digits where thirty are believed, so asking for one panics
+//! and names it.
 
 mod real_field;
 mod traits;
@@ -197,7 +198,8 @@ mod tests {
         assert!(!lit(-1.0).sqrt().is_finite() && lit(-1.0).try_sqrt().is_none());
     }
 
-    /// Machin's formula, `pi = 16 atan(1/5) - 4 atan(1/239)`: hundreds of operations against a stored constant.
+    /// Machin's formula, `pi = 16 atan(1/5) - 4 atan(1/239)`: hundreds of operations against a stored
+    /// constant.
     #[test]
     fn machin_finds_pi() {
         let atan_of_inverse = |n: f64| {

@@ -1,4 +1,5 @@
-//! Extreme input: stiffness over fifteen decades, densities a million apart, very large strain, Hill's law at its end.
+//! Extreme input: stiffness over fifteen decades, densities a million apart, very large strain, Hill's law at
+//! its end.
 
 use materialpoint::error::{SetupError, StepError};
 use materialpoint::law::{Hill, LinearElastic, Moduli, NeoHookean};
@@ -18,8 +19,8 @@ fn hill(modulus: f64) -> Hill<f64> {
     }
 }
 
-/// Displacements, velocities over the wave speed and stresses over the modulus of a bar that vibrates between walls, a tenth
-/// of the wave speed fast, after the same number of steps per period whatever the modulus.
+/// Displacements, velocities over the wave speed and stresses over the modulus of a bar that vibrates between
+/// walls, a tenth of the wave speed fast, after the same number of steps per period whatever the modulus.
 fn similar(variant: Variant, modulus: f64) -> [Vec<f64>; 3] {
     let speed = modulus.sqrt();
     let bodies = Bodies::on_grid(hill(modulus), 1.0, 10)
@@ -44,7 +45,8 @@ fn difference(a: &[Vec<f64>; 3], b: &[Vec<f64>; 3]) -> f64 {
     pairs.fold(0.0, |most, (a, b)| (a - b).abs().max(most))
 }
 
-/// To the bit where the moduli's roots are powers of two, to round-off elsewhere: no threshold in the step has a unit.
+/// To the bit where the moduli's roots are powers of two, to round-off elsewhere: no threshold in the step
+/// has a unit.
 #[test]
 fn stiffness_over_fifteen_decades_changes_nothing_but_the_units() {
     for variant in variants() {
@@ -85,8 +87,9 @@ const LIGHT: [(Variant, f64); 12] = [
     ((BSpline, Relaxed), 5.22e-2),
 ];
 
-/// A light bar vibrates between a wall and a block a million times as dense, which is as good as a wall. Functions or slopes
-/// that reach over the interface make the bar longer by a part of a cell: linear functions alone do not.
+/// A light bar vibrates between a wall and a block a million times as dense, which is as good as a wall.
+/// Functions or slopes that reach over the interface make the bar longer by a part of a cell: linear
+/// functions alone do not.
 #[test]
 fn a_block_a_million_times_as_dense_is_a_wall() {
     let mut missed = Vec::new();
@@ -140,8 +143,8 @@ fn closed_form(stretch: f64) -> f64 {
     neo().stress(&Matrix1::new(stretch))[(0, 0)]
 }
 
-/// Largest error of the stress over the final one, when a bar on a wall is drawn or pressed to `end` times its length by the
-/// traction that belongs to uniform deformation.
+/// Largest error of the stress over the final one, when a bar on a wall is drawn or pressed to `end` times
+/// its length by the traction that belongs to uniform deformation.
 fn drawn(variant: Variant, end: f64, length: f64, cells: usize) -> Result<f64, StepError> {
     let (step, rate) = (0.01, 0.1_f64.copysign(end - 1.0));
     let mut bodies = Bodies::on_grid(neo(), length, cells)
@@ -164,8 +167,9 @@ fn drawn(variant: Variant, end: f64, length: f64, cells: usize) -> Result<f64, S
     Ok(errors.fold(0.0, f64::max))
 }
 
-/// Errors drawn to 5 and pressed to 0.2. What is not in it fails: particle sums with linear slopes (linear and dual domain,
-/// 48 to 98 % or out of the grid) and, pressed, linear functions with published consistent TLS (a particle turns inside out).
+/// Errors drawn to 5 and pressed to 0.2. What is not in it fails: particle sums with linear slopes (linear
+/// and dual domain, 48 to 98 % or out of the grid) and, pressed, linear functions with published consistent
+/// TLS (a particle turns inside out).
 const DRAWN: [(Variant, f64, f64); 9] = [
     ((BSpline, Shepard), 1.80e-1, 1.42e-1),
     ((Linear, TaylorLumped), 2.53e-2, 1.80e-2),

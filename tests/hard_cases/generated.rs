@@ -1,9 +1,10 @@
 //! Random scenes, as text, from reading to the files.
 //!
-//! * Valid scenes ([`scene_text`]): most are accepted (all but 1 %; what is refused is refused by a typed error), and a
-//!   run of at most 80 steps is done or stops with a typed error of the step. What it prints and writes holds no `NaN`
-//!   and no infinity. Shepard, TLS and relaxed TLS keep mass and momentum to 1e-10 in `f64` (5e5 roundings; sums here
-//!   have at most 2e3 terms), and to 1e-3 in `f32`, also where the step is far too large.
+//! * Valid scenes ([`scene_text`]): most are accepted (all but 1 %; what is refused is refused by a typed
+//!   error), and a run of at most 80 steps is done or stops with a typed error of the step. What it prints
+//!   and writes holds no `NaN` and no infinity. Shepard, TLS and relaxed TLS keep mass and momentum to 1e-10
+//!   in `f64` (5e5 roundings; sums here have at most 2e3 terms), and to 1e-3 in `f32`, also where the step is
+//!   far too large.
 //! * Damaged scenes ([`damage`]): they are read or refused in one line, and reading never panics.
 
 mod damage;
@@ -151,8 +152,8 @@ proptest! {
     }
 }
 
-/// A law that remembers moves volumes where a relaxation moves its stress, and a volume holds its liquid's mass: mapped with
-/// the masses of then the liquid's momentum was off by 4e-5 of itself.
+/// A law that remembers moves volumes where a relaxation moves its stress, and a volume holds its liquid's
+/// mass: mapped with the masses of then the liquid's momentum was off by 4e-5 of itself.
 #[test]
 fn a_liquid_keeps_its_momentum_where_volumes_are_relaxed() {
     let scene = "title = \"Two bodies\"\n\

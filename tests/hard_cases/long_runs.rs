@@ -1,4 +1,5 @@
-//! Long runs in which particles cross cell edges all the time: who gains energy, who keeps it, who loses as much as is exact.
+//! Long runs in which particles cross cell edges all the time: who gains energy, who keeps it, who loses as
+//! much as is exact.
 //!
 //! The bar of `examples/long_runs.rs`, which writes all of it into `docs/verification/long-runs.md`.
 //! *Smooth*: v0 = 0.08 m/s on 80 cells; nothing dissipates before 7.96 s. *Shocks*: v0 = 0.8 m/s on 20 cells;
@@ -36,7 +37,8 @@ fn published_tls_gains_energy_although_nothing_breaks() {
     assert!((1.1..1.25).contains(&found), "{found}");
 }
 
-/// With four particles per cell it ends in a typed error within two seconds, with consistent mass and every basis.
+/// With four particles per cell it ends in a typed error within two seconds, with consistent mass and every
+/// basis.
 #[test]
 fn published_tls_with_few_particles_stops() {
     for (basis, [from, to]) in BASES.into_iter().zip([[0.7, 1.2], [0.7, 1.2], [1.1, 1.8]]) {
@@ -67,8 +69,9 @@ fn plain_methods_lose_too_little_to_shocks() {
     }
 }
 
-/// B-splines with relaxed TLS lose what the entropy solution loses, to 3 % at 2 s and 10 % at 5 s; linear and dual domain keep
-/// up to twice as much. None loses more, but for the first tenths of a second after the waves broke (linear 4 % at 1 s).
+/// B-splines with relaxed TLS lose what the entropy solution loses, to 3 % at 2 s and 10 % at 5 s; linear and
+/// dual domain keep up to twice as much. None loses more, but for the first tenths of a second after the
+/// waves broke (linear 4 % at 1 s).
 #[test]
 fn relaxed_tls_follows_the_entropy_solution() {
     let (entropy, estimate) = exact(&SHOCKS, 500).unwrap();
@@ -174,8 +177,9 @@ fn over_seeds(case: &Case, basis: Basis, per_cell: usize, jitter: f64) -> [f64; 
     })
 }
 
-/// No growth at 0.6; at 1.0, where particles nearly touch and a cell may hold two of four, linear functions and dual domain with
-/// 4 per cell gain in one layout of four (16 and 12 %). B-splines with 4 per cell never gain, but lose a quarter in one layout.
+/// No growth at 0.6; at 1.0, where particles nearly touch and a cell may hold two of four, linear functions
+/// and dual domain with 4 per cell gain in one layout of four (16 and 12 %). B-splines with 4 per cell never
+/// gain, but lose a quarter in one layout.
 #[test]
 #[ignore = "prints the table of random layouts in docs/verification/long-runs.md; five minutes"]
 fn random_layouts_over_seeds() {
@@ -203,7 +207,8 @@ fn random_layouts_over_seeds() {
     }
 }
 
-/// All methods, layouts and masses of the page: who stops, and that nobody else gains more than is documented.
+/// All methods, layouts and masses of the page: who stops, and that nobody else gains more than is
+/// documented.
 #[test]
 #[ignore = "two minutes; the figures are those of docs/verification/long-runs.md"]
 fn who_lasts_in_the_full_set() {

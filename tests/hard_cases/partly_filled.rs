@@ -1,9 +1,9 @@
 //! Partly filled cells: bodies that move freely through the grid, all bases with all reconstructions.
 //!
-//! Expected: rigid motion is exact to round-off wherever the ends lie, since equal velocities map to equal velocities and
-//! cause no strain. A uniform stress balanced by tractions stays where the quadrature is exact over the body: fits that end at
-//! the body's surfaces integrate slopes exactly, particle sums do not. A tiny particle alone in a cell must not be torn off
-//! where force and mass come from the same functions.
+//! Expected: rigid motion is exact to round-off wherever the ends lie, since equal velocities map to equal
+//! velocities and cause no strain. A uniform stress balanced by tractions stays where the quadrature is exact
+//! over the body: fits that end at the body's surfaces integrate slopes exactly, particle sums do not. A tiny
+//! particle alone in a cell must not be torn off where force and mass come from the same functions.
 
 use materialpoint::error::StepError;
 use materialpoint::law::{LinearElastic, Moduli};
@@ -20,7 +20,8 @@ fn grid(length: f64, cells: usize) -> Elastic {
     Bodies::on_grid(LinearElastic { moduli }, length, cells)
 }
 
-/// The largest departures of velocity and stress from what is exact, and of the positions, over the particles.
+/// The largest departures of velocity and stress from what is exact, and of the positions, over the
+/// particles.
 #[derive(Debug, Default)]
 struct Departure {
     velocity: f64,
@@ -50,8 +51,8 @@ fn places() -> impl Iterator<Item = [f64; 2]> {
     offsets.map(|offset| [3.0 + offset, 5.5 + offset])
 }
 
-/// A body that moves one cell to the right under a uniform `stress`, held by tractions; `known`: its ends are surfaces. The
-/// worst over all places, or the first error.
+/// A body that moves one cell to the right under a uniform `stress`, held by tractions; `known`: its ends are
+/// surfaces. The worst over all places, or the first error.
 fn translated(variant: Variant, stress: f64, known: bool) -> Result<Departure, StepError> {
     let forcing = Forcing::none()
         .with_face(LEFT, FaceCondition::Traction(vector![-stress]))
@@ -73,8 +74,9 @@ fn translated(variant: Variant, stress: f64, known: bool) -> Result<Departure, S
     Ok(worst)
 }
 
-/// Measured: velocity 2e-15, stress 4e-16, position 1e-13. A particle that steps exactly on an edge used to be strained by a
-/// node without mass (linear and dual domain with Shepard, stress 3e-3); relaxed TLS magnified round-off to 1e14 and left.
+/// Measured: velocity 2e-15, stress 4e-16, position 1e-13. A particle that steps exactly on an edge used to
+/// be strained by a node without mass (linear and dual domain with Shepard, stress 3e-3); relaxed TLS
+/// magnified round-off to 1e14 and left.
 #[test]
 fn rigid_motion_of_an_unstressed_body_is_exact() {
     for variant in variants() {
@@ -84,8 +86,9 @@ fn rigid_motion_of_an_unstressed_body_is_exact() {
     }
 }
 
-/// Where the ends are not known, fits go on to the end of the cell. Masses that follow from the particles bear it; with
-/// published TLS round-off grows in four of six variants (measured: stress 9e-11 to 3e1, one leaves the grid).
+/// Where the ends are not known, fits go on to the end of the cell. Masses that follow from the particles
+/// bear it; with published TLS round-off grows in four of six variants (measured: stress 9e-11 to 3e1, one
+/// leaves the grid).
 #[test]
 fn rigid_motion_with_ends_unknown_is_exact_where_masses_are_the_particles() {
     for variant in variants() {
@@ -100,8 +103,9 @@ fn rigid_motion_with_ends_unknown_is_exact_where_masses_are_the_particles() {
     }
 }
 
-/// The force of a uniform stress is the difference of a function's values at the ends, which fits give exactly and the
-/// traction takes back (measured: velocity 3e-15, stress 5e-15). Particle sums miss it by their quadrature error.
+/// The force of a uniform stress is the difference of a function's values at the ends, which fits give
+/// exactly and the traction takes back (measured: velocity 3e-15, stress 5e-15). Particle sums miss it by
+/// their quadrature error.
 #[test]
 fn rigid_motion_leaves_a_balanced_stress_alone_where_fits_end_at_the_surface() {
     for variant in variants() {
@@ -151,8 +155,8 @@ fn vibration(simulation: &dyn Simulation<1>) -> f64 {
     simulation.energy().total() - momentum * momentum / mass / 2.0
 }
 
-/// A bar with free ends vibrates in its first mode for five periods while it drifts through ten cells. The highest energy of
-/// the vibration over the initial one, up to the end or the error.
+/// A bar with free ends vibrates in its first mode for five periods while it drifts through ten cells. The
+/// highest energy of the vibration over the initial one, up to the end or the error.
 fn drifting(variant: Variant, per_cell: usize, known: bool) -> (f64, Result<(), StepError>) {
     let start = 0.53;
     let mode = |x: f64| 1e-3 * ((x - start) * std::f64::consts::PI).cos();
@@ -170,8 +174,8 @@ fn drifting(variant: Variant, per_cell: usize, known: bool) -> (f64, Result<(), 
     (highest, ended)
 }
 
-/// Highest energy with 8 and with 4 particles per cell, surfaces known. Euler-Cromer's own wave is 1.016. With 4 particles
-/// published TLS feeds on its crossings.
+/// Highest energy with 8 and with 4 particles per cell, surfaces known. Euler-Cromer's own wave is 1.016.
+/// With 4 particles published TLS feeds on its crossings.
 const DRIFTING: [(Variant, f64, f64); 12] = [
     ((Linear, Shepard), 1.021, 1.019),
     ((DualDomain, Shepard), 1.016, 1.016),
@@ -199,8 +203,8 @@ fn a_free_end_sweeps_through_cells() {
     }
 }
 
-/// Published TLS does not bear a free end of which it does not know: it ends in a typed error or, with lumped masses that are positive and the
-/// bases whose slopes reach far, with 2e4 and 4e6 times the energy.
+/// Published TLS does not bear a free end of which it does not know: it ends in a typed error or, with lumped
+/// masses that are positive and the bases whose slopes reach far, with 2e4 and 4e6 times the energy.
 #[test]
 fn an_unknown_free_end_ends_published_fits() {
     for variant in variants().filter(|v| matches!(v.1, TaylorLumped | TaylorConsistent)) {
@@ -214,8 +218,8 @@ fn an_unknown_free_end_ends_published_fits() {
     }
 }
 
-/// Largest acceleration of any particle over a hundred steps of a body under unit stress let go, in units of stress over
-/// density and cell, when one particle with 1e-12 of a cell's mass is alone in the next cell.
+/// Largest acceleration of any particle over a hundred steps of a body under unit stress let go, in units of
+/// stress over density and cell, when one particle with 1e-12 of a cell's mass is alone in the next cell.
 fn hurled(variant: Variant, place: f64) -> Result<f64, StepError> {
     let (half, step) = (0.5e-12, 0.01);
     let mut bodies = grid(6.0, 6).with_body([1.0, 4.0], 12, 1.0, true).with_body(
@@ -239,9 +243,9 @@ fn hurled(variant: Variant, place: f64) -> Result<f64, StepError> {
     Ok(most)
 }
 
-/// Bounded where the force is a sum over the particles and the slopes are those of the values (measured: up to 3.2). Dual
-/// domain's slopes reach a cell further than its values, and a fit gives the tiny particle's stress to half a cell: a force
-/// without its mass, 1e10 and more, which throws the particle out of the grid.
+/// Bounded where the force is a sum over the particles and the slopes are those of the values (measured: up
+/// to 3.2). Dual domain's slopes reach a cell further than its values, and a fit gives the tiny particle's
+/// stress to half a cell: a force without its mass, 1e10 and more, which throws the particle out of the grid.
 #[test]
 fn a_particle_with_a_billionth_of_a_thousandth_of_a_cell_is_not_torn_off_by_particle_sums() {
     for variant in variants() {
@@ -258,8 +262,8 @@ fn a_particle_with_a_billionth_of_a_thousandth_of_a_cell_is_not_torn_off_by_part
     }
 }
 
-/// Two bars meet and part again. What is lost of mass and momentum in the mapping, and of the particles' momentum, in shares
-/// of the mass and of the momenta's sizes.
+/// Two bars meet and part again. What is lost of mass and momentum in the mapping, and of the particles'
+/// momentum, in shares of the mass and of the momenta's sizes.
 #[test]
 fn a_gap_that_closes_and_opens_keeps_mass_and_momentum() {
     for variant in variants() {
@@ -287,9 +291,10 @@ fn a_gap_that_closes_and_opens_keeps_mass_and_momentum() {
         let errors = simulation.diagnostics().conservation;
         let kept = errors.mass < 1e-14 && errors.momentum_scaled < 1e-14 && lost < 1e-13;
         assert!(kept, "{variant:?}: {errors:?}, {lost:e}");
-        // The bars meet when they share a cell's functions, from 0.65 apart, and part slowly where the fits through
-        // neighbours see both (B-splines reach furthest). With densities that may be negative published TLS with B-splines and the
-        // consistent mass gained so much energy that they went through each other.
+        // The bars meet when they share a cell's functions, from 0.65 apart, and part slowly where the fits
+        // through neighbours see both (B-splines reach furthest). With densities that may be negative
+        // published TLS with B-splines and the consistent mass gained so much energy that they went through
+        // each other.
         let way = if variant == (BSpline, Relaxed) { 0.05 } else { 0.2 };
         assert!(least < 0.3 && gap > least + way, "{variant:?}: {least} {gap}");
     }

@@ -1,12 +1,13 @@
 //! Densities that a fit would take below zero.
 //!
-//! Source: the papers fit densities about the cell's mean (journal, equation 14) and say nothing of their sign. Where particles
-//! fill a cell in part, or masses differ much, the fit is negative at a Gauss point, and so may be a mass of the DOFs. Goal: the
-//! density is positive wherever it is integrated, whatever the particles; mass and momentum of each cell are kept to round-off; a
-//! common velocity stays one, because mass and momentum are drawn towards their means by one factor.
+//! Source: the papers fit densities about the cell's mean (journal, equation 14) and say nothing of their
+//! sign. Where particles fill a cell in part, or masses differ much, the fit is negative at a Gauss point,
+//! and so may be a mass of the DOFs. Goal: the density is positive wherever it is integrated, whatever the
+//! particles; mass and momentum of each cell are kept to round-off; a common velocity stays one, because mass
+//! and momentum are drawn towards their means by one factor.
 //!
-//! Expected: at least 1 % of the cell's mean at each Gauss point. Round-off: a few sums, and of the fit before it is drawn, whose
-//! coefficients are up to the cell's volume over that of the particles.
+//! Expected: at least 1 % of the cell's mean at each Gauss point. Round-off: a few sums, and of the fit
+//! before it is drawn, whose coefficients are up to the cell's volume over that of the particles.
 
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::field::MassMomentum;
@@ -26,7 +27,8 @@ struct Least {
     other: f64,
 }
 
-/// Of particles in one cell `[0.3, 1]^D`, given by their places in it, volumes as shares of it and densities. Asserts what must be kept.
+/// Of particles in one cell `[0.3, 1]^D`, given by their places in it, volumes as shares of it and densities.
+/// Asserts what must be kept.
 fn least<const D: usize, const NB: usize>(particles: &[([f64; D], f64, f64)]) -> Least {
     let grid = Grid::new(SVector::repeat(0.3), SVector::repeat(1.0), [1; D]).unwrap();
     let place = |u: &[f64; D]| SVector::from(u.map(|u| 0.3 + 0.7 * u));
@@ -158,7 +160,8 @@ fn saturated<B: BasisFamily<f64, 1>>(basis: B, degree: usize, mass: VelocityMass
     apart
 }
 
-/// Both phases divide the momentum of one mapping by the mass of another; drawn by different factors they would not fit.
+/// Both phases divide the momentum of one mapping by the mass of another; drawn by different factors they
+/// would not fit.
 #[test]
 fn both_phases_of_a_partly_filled_cell_move_on_together() {
     for mass in [VelocityMass::Lumped, VelocityMass::Consistent] {

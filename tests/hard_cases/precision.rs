@@ -1,11 +1,11 @@
 //! How many digits of a run are left: `f32` and `f64` against twice the digits.
 //!
-//! Source: the papers' small vibrating bar (journal section 6.1: H = 1, rho = 2e3, E = 7e6, v0 = 0.28, dt = 1e-7).
-//! Goal: what rounding does to a whole run, apart from the method's error. All runs start from the same particles,
-//! rounded to `f64`, so they differ by the arithmetic of the steps alone (and in `f32` by the rounding of the start).
-//! Expected: strain is a difference of DOF velocities that are 1/13 of the largest apart, so one digit is lost to it
-//! and none elsewhere. A difference below that would mean that the judge has no more digits than the judged, one
-//! above it that a step loses some.
+//! Source: the papers' small vibrating bar (journal section 6.1: H = 1, rho = 2e3, E = 7e6, v0 = 0.28, dt =
+//! 1e-7). Goal: what rounding does to a whole run, apart from the method's error. All runs start from the
+//! same particles, rounded to `f64`, so they differ by the arithmetic of the steps alone (and in `f32` by the
+//! rounding of the start). Expected: strain is a difference of DOF velocities that are 1/13 of the largest
+//! apart, so one digit is lost to it and none elsewhere. A difference below that would mean that the judge
+//! has no more digits than the judged, one above it that a step loses some.
 
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::grid::{Face, Grid, Side};
@@ -121,8 +121,8 @@ fn difference(found: &dyn Simulation<1>, judge: &dyn Simulation<1>) -> f64 {
     (error / size).sqrt()
 }
 
-/// Measured over the nine methods: f64 7e-16 to 3.5e-15, f32 9e-7 to 4.5e-6, and mass and momentum of the judge kept
-/// to 2e-31.
+/// Measured over the nine methods: f64 7e-16 to 3.5e-15, f32 9e-7 to 4.5e-6, and mass and momentum of the
+/// judge kept to 2e-31.
 #[test]
 fn digits_of_the_stress_in_f32_and_f64() {
     for method in methods() {
@@ -141,9 +141,10 @@ fn digits_of_the_stress_in_f32_and_f64() {
     }
 }
 
-/// Three periods of a bar of ten cells with four particles each, in a million steps; nothing crosses. Mass and momentum are
-/// mapped anew in every step, so their errors cannot add up: 4.5e-16 and 1.5e-15 are the largest of all steps and methods.
-/// The stress differs from double-double by at most 1.3e-14, 3.4e-14 and 3.0e-13 after 1e3, 1e4 and 1e5 steps.
+/// Three periods of a bar of ten cells with four particles each, in a million steps; nothing crosses. Mass
+/// and momentum are mapped anew in every step, so their errors cannot add up: 4.5e-16 and 1.5e-15 are the
+/// largest of all steps and methods. The stress differs from double-double by at most 1.3e-14, 3.4e-14 and
+/// 3.0e-13 after 1e3, 1e4 and 1e5 steps.
 #[test]
 #[ignore = "a million steps for nine methods: minutes"]
 fn round_off_over_a_million_steps() {

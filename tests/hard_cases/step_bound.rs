@@ -1,16 +1,18 @@
 //! The bound of the critical step (`docs/verification/stability.md`) against the eigenvalue that it bounds.
 //!
-//! Bars, squares and cubes with free ends at offsets against the grid, on cells of 1 : 1 and 1 : 4, in regular and in random layouts, with
-//! one to four particles per cell and axis. Expected: the power iteration's eigenvalue never exceeds the bound, whatever the layout
-//! and the basis, for plain MPM, of which alone it is proved; in full cells along one axis the bound of linear functions is the classical
-//! `4 / h^2`. A sample of many particles is as stiff as the whole where the whole is alike.
+//! Bars, squares and cubes with free ends at offsets against the grid, on cells of 1 : 1 and 1 : 4, in
+//! regular and in random layouts, with one to four particles per cell and axis. Expected: the power
+//! iteration's eigenvalue never exceeds the bound, whatever the layout and the basis, for plain MPM, of which
+//! alone it is proved; in full cells along one axis the bound of linear functions is the classical `4 / h^2`.
+//! A sample of many particles is as stiff as the whole where the whole is alike.
 
 use materialpoint::method::{Method, ReconstructionKind};
 use materialpoint::stepper::Forcing;
 use materialpoint_command::run::{InSpace, simulation_in};
 use materialpoint_command::scene::Scene;
 
-/// Of a body with so many axes: the particles per cell, the offset in cells, the jitter and the length of cells along all but the first axis.
+/// Of a body with so many axes: the particles per cell, the offset in cells, the jitter and the length of
+/// cells along all but the first axis.
 struct Layout {
     axes: usize,
     per_cell: usize,
@@ -129,8 +131,9 @@ fn in_full_cells_it_is_the_classical_one() {
     }
 }
 
-/// A bar of 8000 particles, alike all along: what is found on the 4096 at its left end holds for all of it. (Of relaxed TLS, whose
-/// eigenvalues are real.) Within 2 %: 0.8 % was measured with dual domain, and where it comes from was not looked into.
+/// A bar of 8000 particles, alike all along: what is found on the 4096 at its left end holds for all of it.
+/// (Of relaxed TLS, whose eigenvalues are real.) Within 2 %: 0.8 % was measured with dual domain, and where
+/// it comes from was not looked into.
 #[test]
 fn a_sample_is_as_stiff_as_the_whole() {
     let has_real_ones = |method: &Method| method.reconstruction == ReconstructionKind::RelaxedTaylor;

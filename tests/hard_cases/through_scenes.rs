@@ -1,7 +1,8 @@
-//! Hard cases of this folder through a scene: what a user writes must build what the other tests build by hand.
+//! Hard cases of this folder through a scene: what a user writes must build what the other tests build by
+//! hand.
 //!
-//! Expected: the balance of energy. No load acts and no wall moves, so that the energy never rises above that of the start, but for
-//! the half step by which velocities lag. What moves as a whole is not strained.
+//! Expected: the balance of energy. No load acts and no wall moves, so that the energy never rises above that
+//! of the start, but for the half step by which velocities lag. What moves as a whole is not strained.
 
 use materialpoint::particles::Particles;
 use materialpoint_command::run::{Summary, run, run_in};
@@ -52,7 +53,8 @@ fn momentum(particles: &Particles<f64, 1>) -> f64 {
     momenta.map(|(m, v)| m * v[0]).sum()
 }
 
-/// With ends unknown B-splines had 2 to 500 times the energy. What is left is that of the half step, in proportion to the step.
+/// With ends unknown B-splines had 2 to 500 times the energy. What is left is that of the half step, in
+/// proportion to the step.
 #[test]
 fn bars_that_meet_gain_no_energy() {
     for name in BASES {
@@ -128,7 +130,8 @@ velocity = ["-1", "0"]
 particles = "none"
 "#;
 
-/// One particle that starts on a corner of four cells, two beside each other, and nine on the corners of cells.
+/// One particle that starts on a corner of four cells, two beside each other, and nine on the corners of
+/// cells.
 #[test]
 fn lone_particles_move_as_they_did() {
     let boxes = [
@@ -160,7 +163,8 @@ fn lone_particles_move_as_they_did() {
     }
 }
 
-/// A free block with one particle a cell that is let go under a strain: it swings, and neither its energy nor its momentum grows.
+/// A free block with one particle a cell that is let go under a strain: it swings, and neither its energy nor
+/// its momentum grows.
 #[test]
 fn a_block_of_one_particle_a_cell_gains_neither_energy_nor_momentum() {
     for name in BASES {

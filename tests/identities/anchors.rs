@@ -33,7 +33,8 @@ fn mean(cell: &Cell<2>) -> f64 {
     (x.cos() - (x + 1.0).cos()) * ((y + 1.0).sin() - y.sin())
 }
 
-/// Journal section 5.3's method on the two-dimensional field; paper 6.17e-3, an independent prototype 6.170989e-3.
+/// Journal section 5.3's method on the two-dimensional field; paper 6.17e-3, an independent prototype
+/// 6.170989e-3.
 #[test]
 fn the_field_sin_x_cos_y_on_25_cells() {
     let grid = Grid::new(vector![0.0, 0.0], vector![5.0, 5.0], [5, 5]).unwrap();
@@ -91,8 +92,8 @@ fn second_cell(points: &[f64]) -> ([f64; 3], Taylor<f64, 1, 3>) {
     (fits[0], taylor)
 }
 
-/// The degenerate cell (journal figure 4): with points at pi and 5 pi/3 only, the quadratic function is -1/3 of
-/// the linear one there. It must be dropped, not fitted with garbage; the integral is kept all the same.
+/// The degenerate cell (journal figure 4): with points at pi and 5 pi/3 only, the quadratic function is -1/3
+/// of the linear one there. It must be dropped, not fitted with garbage; the integral is kept all the same.
 #[test]
 fn the_degenerate_cell_is_not_distorted() {
     // Twice the second point: then three particles, so that it is not their number that drops the function.
@@ -126,6 +127,7 @@ fn one_more_point_makes_the_degenerate_cell_whole() {
         .map(|k| f64::from(k) / 10.0 - 1.0)
         .map(|s| (evaluate(&a, &vector![s]) - (1.5 * PI + s * PI / 2.0).sin() - 2.0).abs())
         .fold(0.0, f64::max);
-    // Half a sine wave is a parabola up to 0.06 of its height (best fit); the points' unevenness doubles that.
+    // Half a sine wave is a parabola up to 0.06 of its height (best fit); the points' unevenness doubles
+    // that.
     assert!(worst < 0.12, "{worst}");
 }

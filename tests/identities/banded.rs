@@ -64,8 +64,9 @@ fn matrices<T: Scalar>(system: &System) -> (Banded<T>, DMatrix<T>) {
     (banded, dense)
 }
 
-/// Backward error of the factorisation: `w + 1` operations an entry, growth of entries at most 2 for a diagonally
-/// dominant matrix; times the condition number, at most the largest row sum, `4 w + 1`. Twice that for two solvers.
+/// Backward error of the factorisation: `w + 1` operations an entry, growth of entries at most 2 for a
+/// diagonally dominant matrix; times the condition number, at most the largest row sum, `4 w + 1`. Twice that
+/// for two solvers.
 fn allowed<T: Scalar>(system: &System) -> T {
     let w = system.half_band;
     epsilon::<T>() * T::count(8 * (w + 1) * (4 * w + 1))

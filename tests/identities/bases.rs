@@ -18,9 +18,9 @@ fn roundings(degree: usize, dimension: usize, calls: usize) -> usize {
     (4 * degree + 4) * dimension + calls
 }
 
-/// The local coordinate lies in [0, 1] up to the two roundings of `(x - min)/h`, which is as large as the number of
-/// cells, and the two of an edge's position, which is as large as the position; a value then misses [0, 1] by
-/// so much times its slope, `degree` at most.
+/// The local coordinate lies in [0, 1] up to the two roundings of `(x - min)/h`, which is as large as the
+/// number of cells, and the two of an edge's position, which is as large as the position; a value then misses
+/// [0, 1] by so much times its slope, `degree` at most.
 fn below_zero<T: Scalar, const D: usize>(grid: &Grid<T, D>, degree: usize) -> T {
     let farthest = |a: usize| grid.min()[a].abs().max(grid.max()[a].abs()) * grid.inverse_cell_size()[a];
     let size = (0..D)
@@ -58,8 +58,8 @@ fn sums<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     Ok(())
 }
 
-/// Greville abscissa of function `i` on an axis of `cells` cells, in cells: the mean of its inner knots. For degree
-/// 1 that is the node.
+/// Greville abscissa of function `i` on an axis of `cells` cells, in cells: the mean of its inner knots. For
+/// degree 1 that is the node.
 fn greville<T: Scalar>(degree: usize, cells: usize, i: usize) -> T {
     let knots = (i + 1..=i + degree).map(|k| k.saturating_sub(degree).min(cells));
     T::count(knots.sum()) / T::count(degree)
@@ -97,8 +97,8 @@ fn linear_field<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     (value_error, slope_error)
 }
 
-/// Coefficients are as large as the number of cells, and so are the errors; slopes carry `2 p` more per function,
-/// since they are differences of neighbours' products.
+/// Coefficients are as large as the number of cells, and so are the errors; slopes carry `2 p` more per
+/// function, since they are differences of neighbours' products.
 fn reproduces_linear<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     body: &Body<T, D>,
@@ -157,8 +157,8 @@ proptest! {
     }
 }
 
-/// The reproduction of `x` needs the right coefficients: equal distances do for nodes, not for B-splines beyond
-/// degree 1, whose functions crowd at the ends.
+/// The reproduction of `x` needs the right coefficients: equal distances do for nodes, not for B-splines
+/// beyond degree 1, whose functions crowd at the ends.
 #[test]
 fn equally_spaced_coefficients_do_not_reproduce_linear_fields_with_b_splines() {
     let grid = Grid::new(vector![0.0], vector![1.0], [6]).unwrap();

@@ -123,8 +123,9 @@ proptest! {
     }
 }
 
-/// A density of mass is the fit of the mass as any amount is fitted, but where that would be less than 1 % of the cell's mean at a Gauss
-/// point: there it is drawn towards the mean, no further than it must, and a momentum of one velocity with it.
+/// A density of mass is the fit of the mass as any amount is fitted, but where that would be less than 1 % of
+/// the cell's mean at a Gauss point: there it is drawn towards the mean, no further than it must, and a
+/// momentum of one velocity with it.
 fn stays_positive<T: Scalar, const D: usize, const NB: usize>(
     layout: &Layout<D>,
 ) -> Result<(), TestCaseError> {
@@ -187,7 +188,8 @@ proptest! {
     }
 }
 
-/// Neighbours lend what they know: a parabola is seen by every cell that then has all functions, whatever its own particles.
+/// Neighbours lend what they know: a parabola is seen by every cell that then has all functions, whatever its
+/// own particles.
 fn reproduces_a_parabola(layout: &Layout<1>) -> Result<(), TestCaseError> {
     let (body, mut taylor) = (
         layout.body::<f64>(),
@@ -205,7 +207,8 @@ fn reproduces_a_parabola(layout: &Layout<1>) -> Result<(), TestCaseError> {
         let centre = f64::from(cell) + 0.5;
         let exact = [parabola(centre) + 1.0 / 12.0, centre - 1.0, 0.5];
         for (found, expected) in fit.iter().zip(exact) {
-            // Places are rounded in the size of `min`; a share of 2 % of a function magnifies that by 50, twice.
+            // Places are rounded in the size of `min`; a share of 2 % of a function magnifies that by 50,
+            // twice.
             prop_assert!((found - expected).abs() < 1e-9, "{cell}: {fit:?} {exact:?}");
         }
     }
@@ -221,8 +224,8 @@ proptest! {
     }
 }
 
-/// Relative to the amounts themselves, conservation is only as good as the fit's coefficients are small: at most some
-/// five roundings of the largest.
+/// Relative to the amounts themselves, conservation is only as good as the fit's coefficients are small: at
+/// most some five roundings of the largest.
 fn keeps_cells_relative_to_coefficients<const D: usize, const NB: usize>(
     layout: &Layout<D>,
     mut taylor: Taylor<f64, D, NB>,
@@ -263,16 +266,16 @@ proptest! {
 proptest! {
     #![proptest_config(config())]
 
-    /// A virtual point changes how an amount is spread over its cell, and not the amount. What a neighbour says at the edge may be
-    /// as large as its fit is badly determined, and the coefficients with it.
+    /// A virtual point changes how an amount is spread over its cell, and not the amount. What a neighbour
+    /// says at the edge may be as large as its fit is badly determined, and the coefficients with it.
     #[test]
     fn virtual_points_keep_the_amounts_of_every_cell(layout in layouts::<1>(12, 5)) {
         keeps_cells_relative_to_coefficients(&layout, Taylor::<f64, 1, 3>::new().with_virtual_points(true))?;
     }
 }
 
-/// Three particles beside the centre of a cell: all that can be known there is a value. The slope's function is small on all
-/// of them, so it must not be fitted, with a slope of `1 / distance`.
+/// Three particles beside the centre of a cell: all that can be known there is a value. The slope's function
+/// is small on all of them, so it must not be fitted, with a slope of `1 / distance`.
 #[test]
 fn a_cluster_beside_the_centre_of_a_cell_does_not_make_a_huge_slope() {
     use super::layout::Place::Near;

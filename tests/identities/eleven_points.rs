@@ -1,12 +1,13 @@
-//! The papers' one-dimensional example over many random layouts: sin x + 2 on `[0, 4 pi]`, four cells, eleven points.
+//! The papers' one-dimensional example over many random layouts: sin x + 2 on `[0, 4 pi]`, four cells, eleven
+//! points.
 //!
 //! ```text
 //! 0        pi       2 pi      3 pi      4 pi
 //! x  r     x r  r   |  u  u  u |  r  r r |        x given, u uniform, r random
 //! ```
 //! The point at pi serves both cells that it touches. The papers do not publish their random points, so their
-//! single figures (RMS 3.9967e-2 for Taylor least squares, 6.0867e-2 for the spline) can only be placed in the
-//! distribution.
+//! single figures (RMS 3.9967e-2 for Taylor least squares, 6.0867e-2 for the spline) can only be placed in
+//! the distribution.
 
 use std::f64::consts::PI;
 
@@ -37,8 +38,8 @@ impl Random {
     }
 }
 
-/// Eleven points with at least three distinct ones in each cell, which fixes how many of the six random ones are
-/// where: one in the first, two in the second, three in the last.
+/// Eleven points with at least three distinct ones in each cell, which fixes how many of the six random ones
+/// are where: one in the first, two in the second, three in the last.
 fn eleven(random: &mut Random) -> Vec<f64> {
     let mut points = vec![0.0, PI];
     points.extend([0.25, 0.5, 0.75].map(|u| (2.0 + u) * PI));

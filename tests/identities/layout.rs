@@ -1,8 +1,8 @@
 //! Random layouts of particles.
 //!
-//! A layout lists, cell by cell, the particles' places within the cell. A place is a fraction of the cell, a point
-//! very near one, or anywhere; a cell's list may be empty, spread, repeat one place, or crowd around one. Each
-//! choice stands before the more exotic ones, because proptest shrinks towards the first.
+//! A layout lists, cell by cell, the particles' places within the cell. A place is a fraction of the cell, a
+//! point very near one, or anywhere; a cell's list may be empty, spread, repeat one place, or crowd around
+//! one. Each choice stands before the more exotic ones, because proptest shrinks towards the first.
 
 use materialpoint::grid::Grid;
 use materialpoint::particles::Bins;

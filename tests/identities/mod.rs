@@ -1,8 +1,8 @@
 //! Identities that must hold for every layout of particles, for `f64` and `f32`, in one, two and three
 //! dimensions, and the papers' figures for the reconstruction alone.
 //!
-//! Layouts are structured values ([`layout`]) that shrink towards few particles at simple fractions of a cell, so
-//! that a failure shows the bad layout. Tolerances count roundings; none is chosen for comfort.
+//! Layouts are structured values ([`layout`]) that shrink towards few particles at simple fractions of a
+//! cell, so that a failure shows the bad layout. Tolerances count roundings; none is chosen for comfort.
 
 mod anchors;
 mod banded;
@@ -20,8 +20,8 @@ mod taylor_functions;
 
 use proptest::test_runner::{Config, RngSeed};
 
-/// 256 layouts or scenes for each property, always the same ones, and no files left behind. `PROPTEST_CASES` and
-/// `PROPTEST_RNG_SEED` ask for more and for others.
+/// 256 layouts or scenes for each property, always the same ones, and no files left behind. `PROPTEST_CASES`
+/// and `PROPTEST_RNG_SEED` ask for more and for others.
 pub fn config() -> Config {
     let asked = Config::default();
     Config {

@@ -1,5 +1,5 @@
-//! Least squares in one cell, on nasty layouts: what is reproduced, what is dropped, and that nothing grows at
-//! the particles.
+//! Least squares in one cell, on nasty layouts: what is reproduced, what is dropped, and that nothing grows
+//! at the particles.
 
 use materialpoint::scalar::Scalar;
 use materialpoint::taylor::{CellFit, DEFAULT_TOLERANCE, taylor_functions};
@@ -56,7 +56,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Fitted<T, D, NB> {
         self.singular.first().copied().unwrap_or(1.0) / self.singular.last().copied().unwrap_or(1.0)
     }
 
-    /// Operations behind a coefficient: a sum over particles of `NB` products of rows with up to `NB` entries.
+    /// Operations behind a coefficient: a sum over particles of `NB` products of rows with up to `NB`
+    /// entries.
     fn operations(&self) -> T {
         T::count(4 * NB * (self.points.len() + NB))
     }
@@ -77,8 +78,8 @@ fn size<const D: usize>(k: usize) -> f64 {
     }
 }
 
-/// Singular values, descending, of the matrix with column `k` scaled so that a function with its usual root mean
-/// square has length one.
+/// Singular values, descending, of the matrix with column `k` scaled so that a function with its usual root
+/// mean square has length one.
 fn singular_values(mut design: DMatrix<f64>, size: impl Fn(usize) -> f64) -> Vec<f64> {
     if design.is_empty() {
         return Vec::new();
@@ -98,9 +99,9 @@ fn root_sum<T: Scalar>(values: impl Iterator<Item = T>) -> T {
 
 /// A polynomial of the fit's functions comes back with its coefficients.
 ///
-/// The fit multiplies with an explicit inverse factor and its transpose (semi-normal equations), so round-off counts
-/// the *square* of the condition number, although the factor itself comes from rotations. Stable least squares
-/// would count it once.
+/// The fit multiplies with an explicit inverse factor and its transpose (semi-normal equations), so round-off
+/// counts the *square* of the condition number, although the factor itself comes from rotations. Stable least
+/// squares would count it once.
 fn reproduces<T: Scalar, const D: usize, const NB: usize>(
     fitted: &Fitted<T, D, NB>,
 ) -> Result<(), TestCaseError> {
@@ -152,8 +153,9 @@ fn drops_what_is_dependent<T: Scalar, const D: usize, const NB: usize>(
     Ok(())
 }
 
-/// The fit is a projection of the particles' values: it never lengthens them. That is what garbage from a singular
-/// system would do. At least the share `t` of each function is left, so round-off is `operations epsilon / t^2` at worst.
+/// The fit is a projection of the particles' values: it never lengthens them. That is what garbage from a
+/// singular system would do. At least the share `t` of each function is left, so round-off is
+/// `operations epsilon / t^2` at worst.
 fn nothing_grows_at_the_particles<T: Scalar, const D: usize, const NB: usize>(
     fitted: &Fitted<T, D, NB>,
 ) -> Result<(), TestCaseError> {

@@ -44,8 +44,8 @@ fn spline<T: Scalar>(x: &[SVector<T, 1>], value: impl Fn(usize) -> T, at: &[T]) 
 }
 
 /// Second derivatives are second differences of values of size one, over a gap squared: so many roundings of
-/// `1/smallest^2`, each solved for in a diagonally dominant system; they enter with a gap squared, at most one.
-/// The end conditions continue them by a ratio of gaps.
+/// `1/smallest^2`, each solved for in a diagonally dominant system; they enter with a gap squared, at most
+/// one. The end conditions continue them by a ratio of gaps.
 fn allowed<T: Scalar>(particles: usize) -> T {
     let ratio = T::one() / T::lit(SMALLEST);
     epsilon::<T>() * ratio * ratio * T::count(particles + 16)

@@ -1,5 +1,5 @@
-//! Sub-points on every layout, in one, two and three dimensions: one is Shepard, weights sum to the volume, and no force
-//! reaches beyond the material.
+//! Sub-points on every layout, in one, two and three dimensions: one is Shepard, weights sum to the volume,
+//! and no force reaches beyond the material.
 
 use materialpoint::basis::{BasisFamily, DualDomain};
 use materialpoint::field::Field;
@@ -35,8 +35,8 @@ fn one_is_shepard<T: Scalar, const D: usize>(layout: &Layout<D>) -> Result<(), T
     Ok(())
 }
 
-/// Points lie in the cells that they name, those hold particles, no point is farther from its particle than the domain reaches
-/// along each axis, and the weights sum to the volume.
+/// Points lie in the cells that they name, those hold particles, no point is farther from its particle than
+/// the domain reaches along each axis, and the weights sum to the volume.
 fn spread_over_the_domain<T: Scalar, const D: usize>(
     per_axis: usize,
     layout: &Layout<D>,
@@ -67,7 +67,8 @@ fn spread_over_the_domain<T: Scalar, const D: usize>(
     Ok(())
 }
 
-/// Forces of a stress without pattern: their sum over the DOFs is round-off of their sizes, and a DOF of no occupied cell has none.
+/// Forces of a stress without pattern: their sum over the DOFs is round-off of their sizes, and a DOF of no
+/// occupied cell has none.
 fn forces_stay_in_the_material<const D: usize>(
     per_axis: usize,
     layout: &Layout<D>,

@@ -27,8 +27,8 @@ fn integrals<T: Scalar, const D: usize, const NB: usize>(n: usize) -> SVector<T,
 fn check<T: Scalar, const D: usize, const NB: usize>() {
     for n in 2..6_usize {
         let found = integrals::<T, D, NB>(n);
-        // Shares sum to one, functions are at most one: a rounding for each point, few for each value, and for
-        // points and weights of the rule itself (Newton's last step; the weight squares a slope of n^2).
+        // Shares sum to one, functions are at most one: a rounding for each point, few for each value, and
+        // for points and weights of the rule itself (Newton's last step; the weight squares a slope of n^2).
         let allowed = epsilon::<T>() * T::count(n.pow(D as u32) + 8 * D * n * n);
         for k in 0..NB {
             let exact = if k == 0 { T::one() } else { T::zero() };

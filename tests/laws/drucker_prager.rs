@@ -1,7 +1,7 @@
 //! Drucker-Prager plasticity: consistency, apex, separation, dissipation, plane strain.
 //!
-//! E = 10 MPa, nu = 0.3, friction 0.6 rad. Expected: yield function not above zero after any step, no energy given back, a free apex
-//! without cohesion that opens and closes without work and without piling up volume.
+//! E = 10 MPa, nu = 0.3, friction 0.6 rad. Expected: yield function not above zero after any step, no energy
+//! given back, a free apex without cohesion that opens and closes without work and without piling up volume.
 
 use super::{Specimen, in_space, moduli, random};
 use materialpoint::law::{ConeMatch, ConstitutiveLaw, DruckerPrager, Hencky, Strength};
@@ -51,8 +51,8 @@ fn random_paths_stay_within_the_cone_and_never_give_energy_back() {
     }
 }
 
-/// In fine steps, work = stored + dissipated with the dissipation that the flow rule gives, `d gamma (xi c - (eta - eta_bar) p)`: not
-/// negative in any step on the cone.
+/// In fine steps, work = stored + dissipated with the dissipation that the flow rule gives,
+/// `d gamma (xi c - (eta - eta_bar) p)`: not negative in any step on the cone.
 #[test]
 fn every_step_dissipates() {
     for matching in MATCHES {
@@ -79,7 +79,8 @@ fn every_step_dissipates() {
     }
 }
 
-/// Tension beyond the apex: mean Kirchhoff stress c / tan(phi) for all but the extension cone's same ratio xi / eta = cot(phi).
+/// Tension beyond the apex: mean Kirchhoff stress c / tan(phi) for all but the extension cone's same ratio xi
+/// / eta = cot(phi).
 #[test]
 fn tension_with_cohesion_ends_at_the_apex() {
     for matching in MATCHES {
@@ -141,7 +142,8 @@ fn the_gap_closes_before_anything_is_borne() {
     assert!((specimen.stress.trace() / 3.0 + pressure).abs() < 1e-9 * pressure);
 }
 
-/// Of the closing step the part in contact counts, in shear too: the material is as if it had been pressed by that part alone.
+/// Of the closing step the part in contact counts, in shear too: the material is as if it had been pressed by
+/// that part alone.
 #[test]
 fn closing_in_one_step_forgets_the_shear_of_the_gap() {
     let law = law(0.0, 0.3, ConeMatch::PlaneStrain);

@@ -1,7 +1,9 @@
-//! Hyperelastic laws: stress against the derivative of the energy, closed forms, wave speed in every direction.
+//! Hyperelastic laws: stress against the derivative of the energy, closed forms, wave speed in every
+//! direction.
 //!
-//! E = 10 MPa, nu = 0.3. Expected: J sigma = dW/dF F^T to the error of central differences (1e-8 of the modulus); closed forms to
-//! round-off; no wave in any direction faster than `wave_speed` where stretches are moderate.
+//! E = 10 MPa, nu = 0.3. Expected: J sigma = dW/dF F^T to the error of central differences (1e-8 of the
+//! modulus); closed forms to round-off; no wave in any direction faster than `wave_speed` where stretches are
+//! moderate.
 
 use super::{Specimen, gradients, in_space, log_strain, moduli};
 use materialpoint::law::{ConstitutiveLaw, Hencky, LinearElastic, NeoHookean, StVenantKirchhoff};
@@ -75,8 +77,9 @@ fn plane_strain_is_three_dimensions_without_strain_off_the_plane() {
     same(&Hencky { moduli });
 }
 
-/// Uniaxial strain by the stretch l: sigma = (lambda + 2 mu) ln(l) / l for Hencky, (lambda + 2 mu) l (l^2 - 1) / 2 for St. Venant and
-/// Kirchhoff, (lambda ln(l) + mu (l^2 - 1)) / l for the neo-Hookean solid, whatever the steps.
+/// Uniaxial strain by the stretch l: sigma = (lambda + 2 mu) ln(l) / l for Hencky, (lambda + 2 mu) l
+/// (l^2 - 1) / 2 for St. Venant and Kirchhoff, (lambda ln(l) + mu (l^2 - 1)) / l for the neo-Hookean solid,
+/// whatever the steps.
 #[test]
 fn uniaxial_strain_has_its_closed_forms() {
     let m = moduli();
@@ -112,8 +115,8 @@ fn uniaxial_strain_has_its_closed_forms() {
     }
 }
 
-/// Simple shear g. Hencky: sigma_12 = 4 mu asinh(g/2) / sqrt(4 + g^2), sigma_11 = g/2 sigma_12 (no stress off the plane). St. Venant
-/// and Kirchhoff: S_12 = mu g, tr E = g^2/2, E_22 = g^2/2, sigma = F S F^T.
+/// Simple shear g. Hencky: sigma_12 = 4 mu asinh(g/2) / sqrt(4 + g^2), sigma_11 = g/2 sigma_12 (no stress off
+/// the plane). St. Venant and Kirchhoff: S_12 = mu g, tr E = g^2/2, E_22 = g^2/2, sigma = F S F^T.
 #[test]
 fn simple_shear_has_its_closed_forms() {
     let m = moduli();
@@ -179,8 +182,9 @@ fn random_rotation(seed: u32) -> Matrix3<f64> {
     nalgebra::Rotation3::from_euler_angles(angles[0], angles[1], angles[2]).into_inner()
 }
 
-/// `rho c^2` of the fastest plane wave along `n`: the largest principal value of the acoustic tensor, `A m = d(sigma n)/dh` under the
-/// increment `h m n^T` (Nanson: the nominal traction on the plane of a wave is the true one).
+/// `rho c^2` of the fastest plane wave along `n`: the largest principal value of the acoustic tensor,
+/// `A m = d(sigma n)/dh` under the increment `h m n^T` (Nanson: the nominal traction on the plane of a wave
+/// is the true one).
 fn fastest<L: ConstitutiveLaw<f64, 3>>(here: &Specimen<'_, 3, L>, n: &nalgebra::Vector3<f64>) -> f64 {
     let step = 1e-5;
     let column = |m: usize| {
@@ -200,7 +204,8 @@ fn fastest<L: ConstitutiveLaw<f64, 3>>(here: &Specimen<'_, 3, L>, n: &nalgebra::
         .max()
 }
 
-/// Over strains of up to 20 % in every direction: the wave speed is a bound, and no more than 1.6 times too great.
+/// Over strains of up to 20 % in every direction: the wave speed is a bound, and no more than 1.6 times too
+/// great.
 #[test]
 fn no_wave_in_any_direction_is_faster_than_the_wave_speed() {
     fn ratio<L: ConstitutiveLaw<f64, 3>>(law: &L) -> (f64, f64) {

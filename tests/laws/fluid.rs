@@ -1,7 +1,8 @@
 //! Newtonian fluid: pressure, energy, separation, shear, and the step it allows.
 //!
-//! K = 2 MPa, gamma = 1 and 7, mu = 0.5 Pa s. Expected: p = K/gamma (J^-gamma - 1) to round-off; the energy is the work of the pressure;
-//! no tension; Couette shear stress mu du/dy, uniaxial viscous stress 4/3 mu d; a stepper hands the time on.
+//! K = 2 MPa, gamma = 1 and 7, mu = 0.5 Pa s. Expected: p = K/gamma (J^-gamma - 1) to round-off; the energy
+//! is the work of the pressure; no tension; Couette shear stress mu du/dy, uniaxial viscous stress 4/3 mu d;
+//! a stepper hands the time on.
 
 use super::Specimen;
 use materialpoint::basis::Linear;
@@ -113,7 +114,8 @@ fn shear_and_stretch_are_resisted_by_their_rates() {
     }
 }
 
-/// Shear flow u = 3 y in a box of particles: after one step the stress in the middle is mu du/dy of the mapped velocity.
+/// Shear flow u = 3 y in a box of particles: after one step the stress in the middle is mu du/dy of the
+/// mapped velocity.
 #[test]
 fn a_step_hands_its_time_to_the_law() {
     let grid = Grid::new(vector![0.0, 0.0], vector![1.0, 1.0], [4, 4]).unwrap();
@@ -146,7 +148,8 @@ fn a_step_hands_its_time_to_the_law() {
     assert!((found - VISCOSITY * 3.0).abs() < 1e-3 * VISCOSITY, "{found}");
 }
 
-/// A mass on a spring and a damper whose force lags a step, as in the stepper: the predicted step is the boundary of growth.
+/// A mass on a spring and a damper whose force lags a step, as in the stepper: the predicted step is the
+/// boundary of growth.
 #[test]
 fn the_stable_step_is_where_a_damped_mode_starts_to_grow() {
     // Mode of frequency w: elastic = 2 / w; damping rate c = 4 D mu' / (rho h^2).

@@ -1,7 +1,8 @@
 //! Frame indifference: an observer who rotates sees the rotated stress and the same state variables.
 //!
-//! Random paths of ten increments of up to 10 % with a random rotation of the observer in each. The path that the observer sees has
-//! the increments R_k (1 + D_k) R_(k-1)^T. Expected: sigma* = R sigma R^T to round-off, through yielding, separation and closing.
+//! Random paths of ten increments of up to 10 % with a random rotation of the observer in each. The path that
+//! the observer sees has the increments R_k (1 + D_k) R_(k-1)^T. Expected: sigma* = R sigma R^T to round-off,
+//! through yielding, separation and closing.
 
 use super::{Specimen, config, moduli, random};
 use materialpoint::law::{

@@ -1,7 +1,8 @@
 //! Every constitutive law alone, without grid or step.
 //!
-//! A law is driven by displacement gradients through [`Specimen`]; what it must give comes from closed forms, from other
-//! decompositions (nalgebra's), from finite differences of an energy, or from rate equations integrated in many small steps.
+//! A law is driven by displacement gradients through [`Specimen`]; what it must give comes from closed forms,
+//! from other decompositions (nalgebra's), from finite differences of an energy, or from rate equations
+//! integrated in many small steps.
 
 mod conformance;
 mod derivatives;

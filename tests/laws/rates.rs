@@ -1,8 +1,9 @@
 //! The plastic laws against their rate equations, integrated apart.
 //!
-//! Principal axes that stand still, logarithmic strains (t - 3/2 t^2, t^2, -sin(2t)/2) times 2 %: the direction turns while the material flows. The
-//! rates d tau = C (d e - d gamma M), d gamma = N C d e / (N C M + h) are integrated by the midpoint rule in 2e5 steps. Expected:
-//! the law's implicit return converges to that at first order (error 1e-4 of the strength at 1600 steps).
+//! Principal axes that stand still, logarithmic strains (t - 3/2 t^2, t^2, -sin(2t)/2) times 2 %: the
+//! direction turns while the material flows. The rates d tau = C (d e - d gamma M), d gamma = N C d e / (N C
+//! M + h) are integrated by the midpoint rule in 2e5 steps. Expected: the law's implicit return converges to
+//! that at first order (error 1e-4 of the strength at 1600 steps).
 
 use super::{Specimen, moduli};
 use materialpoint::law::{ConeMatch, ConstitutiveLaw, DruckerPrager, Strength, VonMises};

@@ -1,7 +1,7 @@
 //! Principal values and axes: against the tensor they came from, known values, nalgebra's decomposition.
 //!
-//! Expected: A = Q L Q^T and Q^T Q = 1 to a few roundings, for equal, nearly equal and widely spread values too; the small value of
-//! a positive definite tensor to its own rounding.
+//! Expected: A = Q L Q^T and Q^T Q = 1 to a few roundings, for equal, nearly equal and widely spread values
+//! too; the small value of a positive definite tensor to its own rounding.
 
 use super::random;
 use materialpoint::tensor::Spectral;

@@ -1,7 +1,7 @@
 //! Material that starts under stress.
 //!
-//! E = 10 MPa, nu = 0.3. Expected: a first step without motion leaves the stress, to round-off of the modulus; stress off the plane as given, or
-//! nu (sigma_xx + sigma_yy); what no state stands for is refused.
+//! E = 10 MPa, nu = 0.3. Expected: a first step without motion leaves the stress, to round-off of the
+//! modulus; stress off the plane as given, or nu (sigma_xx + sigma_yy); what no state stands for is refused.
 
 use super::{Specimen, moduli, random};
 use materialpoint::basis::Linear;

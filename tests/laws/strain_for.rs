@@ -1,8 +1,8 @@
-//! Source: relaxation of stresses, `docs/theory/relaxed-tls.md`.
-//! Goal: the strain that a law gives for a change of stress makes that change.
-//! Parameters: changes of 1e-6 of the modulus in random directions; material at rest, and strained at random by up to 0.45.
-//! Expected: at rest the change itself, to its own size squared. Strained, material is stiffer along some axes than along others: what
-//! comes out is no more than twice the change, and never points the other way.
+//! Source: relaxation of stresses, `docs/theory/relaxed-tls.md`. Goal: the strain that a law gives for a
+//! change of stress makes that change. Parameters: changes of 1e-6 of the modulus in random directions;
+//! material at rest, and strained at random by up to 0.45. Expected: at rest the change itself, to its own
+//! size squared. Strained, material is stiffer along some axes than along others: what comes out is no more
+//! than twice the change, and never points the other way.
 
 use materialpoint::law::{
     ConeMatch, ConstitutiveLaw, DruckerPrager, Hencky, NeoHookean, NewtonianFluid, StVenantKirchhoff,
@@ -60,7 +60,8 @@ fn elastic_laws_make_the_change() {
     check::<3, _>(&von_mises, false);
 }
 
-/// A fluid answers with its pressure, the only part of its stress that follows from the state; separated fluid and sand not at all.
+/// A fluid answers with its pressure, the only part of its stress that follows from the state; separated
+/// fluid and sand not at all.
 #[test]
 fn fluids_answer_with_their_pressure_and_separated_material_not_at_all() {
     let water = NewtonianFluid::new(2e6, 7.0, 1e-3).unwrap();
@@ -88,7 +89,8 @@ fn fluids_answer_with_their_pressure_and_separated_material_not_at_all() {
     assert_eq!(answer(&apart, &change), None);
 }
 
-/// A law of one's own that says nothing: its stress moves in the right direction, by no more than four thirds here.
+/// A law of one's own that says nothing: its stress moves in the right direction, by no more than four thirds
+/// here.
 #[test]
 fn any_other_law_moves_in_the_right_direction() {
     struct Own(Hencky<f64>);

@@ -1,7 +1,8 @@
 //! Drucker-Prager at collapse against Mohr and Coulomb, and the rate of dilation against its angle.
 //!
-//! E = 10 MPa, nu = 0.3. Flow along the plastic potential itself brings a stress that no longer changes: the limit state. Expected there,
-//! with the principal stresses s_1 >= s_3: (s_1 - s_3)/2 = c cos(phi) - (s_1 + s_3)/2 sin(phi) in the state of strain the cone is matched to.
+//! E = 10 MPa, nu = 0.3. Flow along the plastic potential itself brings a stress that no longer changes: the
+//! limit state. Expected there, with the principal stresses s_1 >= s_3: (s_1 - s_3)/2 = c cos(phi) - (s_1 +
+//! s_3)/2 sin(phi) in the state of strain the cone is matched to.
 
 use super::{Specimen, moduli};
 use materialpoint::law::{ConeMatch, DruckerPrager, Strength};
@@ -55,8 +56,8 @@ fn triaxial_tests_end_at_mohr_and_coulombs_strength() {
                 let start = Matrix3::from_diagonal_element(-1e5);
                 let mut specimen = Specimen::<3, _>::under(&law, start, None).unwrap();
                 specimen.volume = specimen.state.volume;
-                // Flow of the edges of Mohr and Coulomb's potential: of the strains across and along, tr(d) = sin(psi) times
-                // (extended ones - compressed ones).
+                // Flow of the edges of Mohr and Coulomb's potential: of the strains across and along, tr(d) =
+                // sin(psi) times (extended ones - compressed ones).
                 let s = angles.1.sin();
                 let (axial, lateral) = if sign < 0.0 {
                     (-2.0 * (1.0 - s), 1.0 + s)
@@ -76,8 +77,8 @@ fn triaxial_tests_end_at_mohr_and_coulombs_strength() {
     }
 }
 
-/// Direct shear under a constant normal stress (Davis 1968): at collapse sigma_xy / sigma_yy = sin(phi) cos(psi) / (1 - sin(phi) sin(psi)), and the
-/// layer rises by tan(psi) per shear.
+/// Direct shear under a constant normal stress (Davis 1968): at collapse sigma_xy / sigma_yy = sin(phi)
+/// cos(psi) / (1 - sin(phi) sin(psi)), and the layer rises by tan(psi) per shear.
 #[test]
 fn direct_shear_dilates_by_the_angle_and_bears_what_davis_says() {
     for angles in [(0.6_f64, 0.6_f64), (0.6, 0.2), (0.5, 0.0)] {
@@ -125,7 +126,8 @@ fn lift(specimen: &mut Specimen<'_, 2, DruckerPrager<f64>>, shear: f64, normal: 
     b
 }
 
-/// Without friction the plane-strain cone is von Mises' cylinder of the radius `c`: Tresca's strength in plane strain.
+/// Without friction the plane-strain cone is von Mises' cylinder of the radius `c`: Tresca's strength in
+/// plane strain.
 #[test]
 fn without_friction_the_strength_is_the_cohesion() {
     let law = law(1e4, (0.0, 0.0), ConeMatch::PlaneStrain);

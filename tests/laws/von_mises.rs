@@ -1,7 +1,8 @@
 //! Von Mises plasticity: consistency, hardening curve, limit in shear, dissipation, plane strain.
 //!
-//! E = 10 MPa, nu = 0.3, sigma_Y = 50 kPa, H = 0.4 MPa (0 where said). Expected: yield function 0 to round-off after yielding, plastic
-//! volume exactly kept, dissipation not negative; Kirchhoff stress against logarithmic strain of slope E H / (E + H).
+//! E = 10 MPa, nu = 0.3, sigma_Y = 50 kPa, H = 0.4 MPa (0 where said). Expected: yield function 0 to
+//! round-off after yielding, plastic volume exactly kept, dissipation not negative; Kirchhoff stress against
+//! logarithmic strain of slope E H / (E + H).
 
 use super::{Specimen, in_space, moduli, random};
 use materialpoint::law::{ConstitutiveLaw, Hencky, VonMises};
@@ -90,7 +91,8 @@ fn uniaxial_tension_hardens_along_its_line() {
     }
 }
 
-/// Simple shear without hardening: sigma_12 = sigma_Y / sqrt(3) but for the turn of the stress, of the size of the elastic strain.
+/// Simple shear without hardening: sigma_12 = sigma_Y / sqrt(3) but for the turn of the stress, of the size
+/// of the elastic strain.
 #[test]
 fn simple_shear_ends_at_the_strength_in_shear() {
     let law = law(0.0);

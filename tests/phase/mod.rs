@@ -1,7 +1,8 @@
 //! A phase of one's own: pore water that cannot move against the solid (the undrained limit).
 //!
-//! Water of bulk modulus K in pores of porosity n adds the pressure rate (K/n) tr d to the effective stress. In uniaxial strain
-//! a bar of modulus E then behaves as a dry bar of modulus E + K/n: same displacements, total stress shared as E to K/n.
+//! Water of bulk modulus K in pores of porosity n adds the pressure rate (K/n) tr d to the effective stress.
+//! In uniaxial strain a bar of modulus E then behaves as a dry bar of modulus E + K/n: same displacements,
+//! total stress shared as E to K/n.
 
 use materialpoint::basis::BSpline;
 use materialpoint::grid::{Face, Grid, Side};
@@ -97,7 +98,8 @@ fn locked_pore_water_stiffens_the_bar_by_its_own_modulus() {
     compare(Taylor::<f64, 1, 3>::new());
 }
 
-/// Largest difference of displacement between a bar stiffened by its water and a dry one as stiff, and largest displacement.
+/// Largest difference of displacement between a bar stiffened by its water and a dry one as stiff, and
+/// largest displacement.
 fn relaxed_difference(relaxation: Relaxation<f64>) -> (f64, f64) {
     let relaxed = || RelaxedTaylor::<f64, 1, 3>::for_degree(2).with_relaxation(relaxation);
     let mut wet = bar(relaxed(), 3e6, LockedWater { stiffness: 4e6 });
@@ -112,9 +114,9 @@ fn relaxed_difference(relaxation: Relaxation<f64>) -> (f64, f64) {
     (difference, dry.iter().map(|u| u[0]).fold(0.0, most))
 }
 
-/// The relaxation takes the effective stress towards its fit and leaves the pressure: the sum is the dry bar's no longer, but
-/// the motion is still that of the stiffer bar. Towards the fit through neighbours there is more to take, and the pressure
-/// does not go along: within a thousandth.
+/// The relaxation takes the effective stress towards its fit and leaves the pressure: the sum is the dry
+/// bar's no longer, but the motion is still that of the stiffer bar. Towards the fit through neighbours there
+/// is more to take, and the pressure does not go along: within a thousandth.
 #[test]
 fn a_relaxed_step_takes_a_second_phase_too() {
     let own = Relaxation {

@@ -1,7 +1,7 @@
 //! Malformed scenes: one mistake each, and what its message must say.
 //!
-//! Every message is one line of reasonable length that names the key, the value where there is one, and what is
-//! allowed.
+//! Every message is one line of reasonable length that names the key, the value where there is one, and what
+//! is allowed.
 
 mod limits;
 mod space;

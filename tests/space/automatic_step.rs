@@ -1,9 +1,11 @@
-//! Source: ExaMPM #43, taichi #3162 (a step that is stable at the start need not be later); Courant, Friedrichs & Lewy (1928).
-//! Goal: `step = "auto"` is renewed as the run goes, so that nothing gains energy at the default; a fixed step is looked at likewise.
-//! Parameters: water that swings in a closed tube at a tenth and a fifth of its speed of sound until the waves break; a bar that
-//! rings in flight (both of them gained energy severalfold, or stopped, with half the critical step of the start).
-//! Expected: no load, walls at rest: the energy never rises, but for what crossing cell edges gives, some per cent. While the tube
-//! is at rest `h / (c + |v|)` is the step of linear functions; where waves break c and |v| are greater and the step is less.
+//! Source: ExaMPM #43, taichi #3162 (a step that is stable at the start need not be later); Courant,
+//! Friedrichs & Lewy (1928). Goal: `step = "auto"` is renewed as the run goes, so that nothing gains energy
+//! at the default; a fixed step is looked at likewise. Parameters: water that swings in a closed tube at a
+//! tenth and a fifth of its speed of sound until the waves break; a bar that rings in flight (both of them
+//! gained energy severalfold, or stopped, with half the critical step of the start). Expected: no load, walls
+//! at rest: the energy never rises, but for what crossing cell edges gives, some per cent. While the tube is
+//! at rest `h / (c + |v|)` is the step of linear functions; where waves break c and |v| are greater and the
+//! step is less.
 
 use materialpoint_command::run::{Outcome, run_in};
 use materialpoint_command::scene::Scene;

@@ -100,8 +100,8 @@ fn another_number_of_axes_and_a_shape_of_nothing_are_errors() {
     assert!(matches!(error, RunError::EmptyBody { index: 0 }), "{error}");
 }
 
-/// A block under an even stress between rollers and a traction that balances it stays as it is, with each law that can start under
-/// stress: two points a cell integrate linear functions along the surface exactly.
+/// A block under an even stress between rollers and a traction that balances it stays as it is, with each law
+/// that can start under stress: two points a cell integrate linear functions along the surface exactly.
 #[test]
 fn an_even_initial_stress_stays_in_equilibrium() {
     let laws = [

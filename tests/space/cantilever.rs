@@ -1,9 +1,10 @@
-//! Source: Bisshopp & Drucker (1945), Mattiasson (1981): `reference::Elastica`.
-//! Goal: large rotation of a slender body at small strain, against an exact solution.
-//! Parameters: the compiled-in scene `cantilever`: P L^2 / (E I) = 2, ten times as long as thick, plane strain with nu = 0, two cells through the
-//! thickness, 9 particles per cell; the force grows over three periods, the tip is averaged over the last two.
-//! Expected: the tip sinks by 0.4935 and comes back by 0.1606 of the length. The elastica leaves shear out, 0.6 (t/L)^2 = 0.6 % of the
-//! deflection here. Measured over it, deflection and shortening: B-splines 1.027 1.050, with four cells through the thickness 1.014 1.020.
+//! Source: Bisshopp & Drucker (1945), Mattiasson (1981): `reference::Elastica`. Goal: large rotation of a
+//! slender body at small strain, against an exact solution. Parameters: the compiled-in scene `cantilever`: P
+//! L^2 / (E I) = 2, ten times as long as thick, plane strain with nu = 0, two cells through the thickness, 9
+//! particles per cell; the force grows over three periods, the tip is averaged over the last two. Expected:
+//! the tip sinks by 0.4935 and comes back by 0.1606 of the length. The elastica leaves shear out, 0.6 (t/L)^2
+//! = 0.6 % of the deflection here. Measured over it, deflection and shortening: B-splines 1.027 1.050, with
+//! four cells through the thickness 1.014 1.020.
 
 use materialpoint::error::StepError;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
@@ -69,8 +70,8 @@ fn the_error_of_bending_halves_with_the_cells() {
     check(44, [1.014, 1.020]);
 }
 
-/// Particles of the stretched side cross linear cells one by one: the beam is torn into blocks and bends too far, on finer grids too
-/// (1.17 and 1.55 on 44 cells).
+/// Particles of the stretched side cross linear cells one by one: the beam is torn into blocks and bends too
+/// far, on finer grids too (1.17 and 1.55 on 44 cells).
 #[test]
 fn linear_functions_tear_the_beam() {
     let linear = bent(Method::new(Basis::Linear, ReconstructionKind::Shepard), 22);

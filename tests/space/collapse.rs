@@ -1,10 +1,10 @@
-//! Sources: Martin & Moyce (1952), square column of water, n^2 = 2, front in the table of Koshizuka & Oka (1996); Lube, Huppert,
-//! Sparks & Freundt (2005) and Lajeunesse, Monnier & Homsy (2005), dry sand in a channel, aspect ratio 1.
-//! Goal: how far columns of water and sand run, beside what was measured.
-//! Parameters: the compiled-in scenes `dam-break` and `granular-column`.
-//! Expected: the water behind which 99 % of it is within 8 % of the measured front; single particles run ahead of it by 10 to
-//! 20 %. The sand runs too far, 1.44 widths instead of 1.2 (1.65 with walls that gave energy), and is 0.84 of the column high where sand
-//! keeps its height.
+//! Sources: Martin & Moyce (1952), square column of water, n^2 = 2, front in the table of Koshizuka & Oka
+//! (1996); Lube, Huppert, Sparks & Freundt (2005) and Lajeunesse, Monnier & Homsy (2005), dry sand in a
+//! channel, aspect ratio 1. Goal: how far columns of water and sand run, beside what was measured.
+//! Parameters: the compiled-in scenes `dam-break` and `granular-column`. Expected: the water behind which 99
+//! % of it is within 8 % of the measured front; single particles run ahead of it by 10 to 20 %. The sand runs
+//! too far, 1.44 widths instead of 1.2 (1.65 with walls that gave energy), and is 0.84 of the column high
+//! where sand keeps its height.
 
 use materialpoint::particles::Particles;
 use materialpoint_command::run::run_in;

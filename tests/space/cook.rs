@@ -1,9 +1,10 @@
-//! Source: Cook (1974); the value of the static solution from refined finite elements, 23.96 for plane stress with E = 1, nu = 1/3, load 1.
-//! Goal: bending and shear of a body whose sides cut through cells, against a published number.
-//! Parameters: the compiled-in scene `cooks-membrane`; plane strain with nu' = nu/(1 + nu) and E' = E (1 - nu'^2) has the same
-//! equations in the plane; a hundredth of the load, so that the geometry stays linear; applied slowly, averaged over the second half.
-//! Expected: 0.2396 m at the middle of the loaded side. Measured over it with 13, 26 and 52 cells: linear 0.995 1.001 1.005, dual domain 1.030
-//! 1.013 1.007, B-splines 1.024 1.011 1.005: first order, as the sides are where particles' volumes end.
+//! Source: Cook (1974); the value of the static solution from refined finite elements, 23.96 for plane stress
+//! with E = 1, nu = 1/3, load 1. Goal: bending and shear of a body whose sides cut through cells, against a
+//! published number. Parameters: the compiled-in scene `cooks-membrane`; plane strain with nu' = nu/(1 + nu)
+//! and E' = E (1 - nu'^2) has the same equations in the plane; a hundredth of the load, so that the geometry
+//! stays linear; applied slowly, averaged over the second half. Expected: 0.2396 m at the middle of the
+//! loaded side. Measured over it with 13, 26 and 52 cells: linear 0.995 1.001 1.005, dual domain 1.030 1.013
+//! 1.007, B-splines 1.024 1.011 1.005: first order, as the sides are where particles' volumes end.
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::stepper::Simulation;
@@ -70,8 +71,8 @@ fn the_error_of_the_rise_halves_with_the_cells() {
     check(52, [1.005, 1.007, 1.005]);
 }
 
-/// It stays within 2 %, and nearer to 1 than particle sums with dual domain and B-splines. With a rate per time towards the fits with
-/// the neighbours it crept under the lasting load (0.977, 0.973, 1.006).
+/// It stays within 2 %, and nearer to 1 than particle sums with dual domain and B-splines. With a rate per
+/// time towards the fits with the neighbours it crept under the lasting load (0.977, 0.973, 1.006).
 #[test]
 fn relaxed_taylor_bears_slanted_free_sides() {
     for (basis, expected) in BASES.into_iter().zip([0.982, 1.004, 1.000]) {

@@ -1,8 +1,8 @@
-//! Source: Sulsky, Chen & Schreyer (1994).
-//! Goal: two elastic discs meet on the grid, part again, and lose neither momentum nor energy.
-//! Parameters: the compiled-in scene `colliding-discs`, 20 and 40 cells, 9 particles per cell.
-//! Expected: momentum to round-off; energy within 0.2 and 0.1 % (it halves with the step, as Euler-Cromer's does); the discs part at
-//! 0.92 of the speed at which they met, the rest of their energy, 15 %, being vibration: elastic bodies that large do just that.
+//! Source: Sulsky, Chen & Schreyer (1994). Goal: two elastic discs meet on the grid, part again, and lose
+//! neither momentum nor energy. Parameters: the compiled-in scene `colliding-discs`, 20 and 40 cells, 9
+//! particles per cell. Expected: momentum to round-off; energy within 0.2 and 0.1 % (it halves with the step,
+//! as Euler-Cromer's does); the discs part at 0.92 of the speed at which they met, the rest of their energy,
+//! 15 %, being vibration: elastic bodies that large do just that.
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::stepper::Simulation;
@@ -92,15 +92,17 @@ fn discs_meet_and_part_and_keep_momentum_and_energy() {
                 (found.restitution - expected).abs() < 0.01,
                 "{basis:?} {cells} {found:?}"
             );
-            // Nearly all is stored in the discs, which are then pressed by a sixth of their width, and apart at the end.
+            // Nearly all is stored in the discs, which are then pressed by a sixth of their width, and apart
+            // at the end.
             assert!(found.kinetic < 0.06, "{found:?}");
             assert!(found.distances[0] < 0.37 && found.distances[1] > 0.6, "{found:?}");
         }
     }
 }
 
-/// Cells that hold both bodies fit one polynomial through them. Measured: energy between 0.76 and 1.09 of the first with linear
-/// functions, 0.87 and 1.24 with dual domain, 0.79 and 1.003 with B-splines (0.86 and 1.07 before their cells were tied).
+/// Cells that hold both bodies fit one polynomial through them. Measured: energy between 0.76 and 1.09 of the
+/// first with linear functions, 0.87 and 1.24 with dual domain, 0.79 and 1.003 with B-splines (0.86 and 1.07
+/// before their cells were tied).
 #[test]
 fn relaxed_taylor_fits_one_polynomial_through_both_discs() {
     for (basis, [lowest, highest]) in BASES.into_iter().zip([[0.72, 1.15], [0.82, 1.35], [0.75, 1.05]]) {

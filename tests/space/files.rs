@@ -109,8 +109,8 @@ fn arrays(path: &Path) -> Vec<(String, Vec<f64>)> {
         .collect()
 }
 
-/// Depth of a free fall of `time` (s) in steps of `dt` (s): exact with half a kick first, and as if it had begun half a step
-/// before without.
+/// Depth of a free fall of `time` (s) in steps of `dt` (s): exact with half a kick first, and as if it had
+/// begun half a step before without.
 fn depth(half_kick: bool, time: f64, dt: f64) -> f64 {
     9.81 * time * if half_kick { time } else { time + dt } / 2.0
 }

@@ -1,13 +1,14 @@
-//! Sources: pressure under a strip load on a half plane (Flamant, Boussinesq; undrained: half the sum of the stresses in the plane, times
-//! Skempton's coefficient of plane strain); Mandel (1953), Cryer (1963): a pressure that rises before it falls; an independent
-//! program: Biot's equations without inertia on the same box by finite elements (quadratic displacement, linear pressure, elements of
-//! 1/16 m, steps that are second order).
-//! Goal: two phases in the plane under a load on a part of a drained surface, from the first moment on into the draining.
-//! Parameters: the compiled-in scene `footing`; undrained with a permeability of 1e-8 m/s to 0.6 s, draining as it is with cells of
-//! 1/3 m to 1.5 and 4 s (c_v t / a^2 = 0.06 and 0.16). Means over the two columns of particles beside the axis in each cell, since the pressure of
-//! single particles alternates within a cell by up to 7 %.
-//! Expected: undrained within 2.0 % of the half plane down to 1.4 half widths; at 2.9 half widths 5.8 % above it, for the layer has a bottom and
-//! a side (finite elements: 5.3 %). Draining, within 1.8 % of finite elements below a half width and within 8 % in the three cells above.
+//! Sources: pressure under a strip load on a half plane (Flamant, Boussinesq; undrained: half the sum of the
+//! stresses in the plane, times Skempton's coefficient of plane strain); Mandel (1953), Cryer (1963): a
+//! pressure that rises before it falls; an independent program: Biot's equations without inertia on the same
+//! box by finite elements (quadratic displacement, linear pressure, elements of 1/16 m, steps that are second
+//! order). Goal: two phases in the plane under a load on a part of a drained surface, from the first moment
+//! on into the draining. Parameters: the compiled-in scene `footing`; undrained with a permeability of 1e-8
+//! m/s to 0.6 s, draining as it is with cells of 1/3 m to 1.5 and 4 s (c_v t / a^2 = 0.06 and 0.16). Means
+//! over the two columns of particles beside the axis in each cell, since the pressure of single particles
+//! alternates within a cell by up to 7 %. Expected: undrained within 2.0 % of the half plane down to 1.4 half
+//! widths; at 2.9 half widths 5.8 % above it, for the layer has a bottom and a side (finite elements: 5.3 %).
+//! Draining, within 1.8 % of finite elements below a half width and within 8 % in the three cells above.
 
 use std::f64::consts::PI;
 

@@ -1,12 +1,14 @@
-//! Sources: Mandel (1953); Cheng & Detournay (1988), whose series is summed here.
-//! Goal: two phases in the plane against an exact solution in which strain and flow are coupled: a slab between smooth rigid plates is
-//! pressed and drains sideways, and the pressure in its middle rises before it falls.
-//! Parameters: a quarter of the slab, half a width of 1 m and a height of 0.4 m, E = 50 MPa, nu = 0.2, M = K_w / n = 750 MPa,
-//! k such that c_v = 1 m2/s; started from the series at 0.02 s, the plate moved as the series says; the side drained and free.
-//! Expected: relative L2 errors of the pressure at 0.05 s with 10 cells of 1.0 % (B-splines with Shepard) to 2.0 %, of the effective stress 0.11
-//! to 0.34 %; with B-splines and Shepard of order 1.8 and 1.6, the way of the free side 4.0 % short and of order 2.3. The pressure in the middle
-//! goes from 1.060 over 1.094 (at 0.05 s) to 0.579 (at 0.5 s) of that in the first moment, within 0.13 % with 20 cells. Inertia, which the
-//! series leaves out, is (time of a shear wave / time of draining)^2 = 1e-4 of the rest.
+//! Sources: Mandel (1953); Cheng & Detournay (1988), whose series is summed here. Goal: two phases in the
+//! plane against an exact solution in which strain and flow are coupled: a slab between smooth rigid plates
+//! is pressed and drains sideways, and the pressure in its middle rises before it falls. Parameters: a
+//! quarter of the slab, half a width of 1 m and a height of 0.4 m, E = 50 MPa, nu = 0.2, M = K_w / n = 750
+//! MPa, k such that c_v = 1 m2/s; started from the series at 0.02 s, the plate moved as the series says; the
+//! side drained and free. Expected: relative L2 errors of the pressure at 0.05 s with 10 cells of 1.0 %
+//! (B-splines with Shepard) to 2.0 %, of the effective stress 0.11 to 0.34 %; with B-splines and Shepard of
+//! order 1.8 and 1.6, the way of the free side 4.0 % short and of order 2.3. The pressure in the middle goes
+//! from 1.060 over 1.094 (at 0.05 s) to 0.579 (at 0.5 s) of that in the first moment, within 0.13 % with 20
+//! cells. Inertia, which the series leaves out, is (time of a shear wave / time of draining)^2 = 1e-4 of the
+//! rest.
 
 mod series;
 

@@ -1,9 +1,9 @@
-//! Source: method page, section 9; Steffen, Wallstedt, Guilkey, Kirby & Berzins (2008).
-//! Goal: the stepper of one dimension is right in two and three, at finite strain with particles that cross cells.
-//! Parameters: the compiled-in scene `manufactured`; 8 and 16 cells a side in 2-D, 4 and 8 in 3-D, 3 particles per cell and axis.
-//! Expected: relative L2 errors of the stress as measured, within 10 %, none above a prototype's (8, 16 cells): linear Shepard
-//! .22 .43, linear TLS .087 .043, B-spline Shepard .15 .073, B-spline TLS .078 .032, linear relaxed .064 .029, B-spline
-//! relaxed .0083 .0075; mass and momentum at round-off.
+//! Source: method page, section 9; Steffen, Wallstedt, Guilkey, Kirby & Berzins (2008). Goal: the stepper of
+//! one dimension is right in two and three, at finite strain with particles that cross cells. Parameters: the
+//! compiled-in scene `manufactured`; 8 and 16 cells a side in 2-D, 4 and 8 in 3-D, 3 particles per cell and
+//! axis. Expected: relative L2 errors of the stress as measured, within 10 %, none above a prototype's (8, 16
+//! cells): linear Shepard .22 .43, linear TLS .087 .043, B-spline Shepard .15 .073, B-spline TLS .078 .032,
+//! linear relaxed .064 .029, B-spline relaxed .0083 .0075; mass and momentum at round-off.
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint_command::run::{InSpace, Summary, run_in};

@@ -1,11 +1,13 @@
-//! Source: the patch test of finite elements (Irons & Razzaque 1972), on random layouts of particles.
-//! Goal: a body under constant stress stays at rest, and a linear velocity strains every particle alike, wherever the particles are.
-//! Parameters: a box full of particles, 4 cells a side, 9 particles per cell (8 in space) moved at random within their spacing;
-//! constant stress between fixed walls for 20 steps of a tenth of a cell; one step of a linear velocity without walls.
-//! Expected: Gauss points in full cells integrate a constant exactly, so that TLS keeps the stress to round-off; particle sums do not. Relaxed TLS
-//! ends a cell where its particles end, beside a wall too where they leave more than a tenth of half a cell: layouts moved by 0.3 of the
-//! spacing are exact, wilder ones not always. It maps velocities by the particles' consistent mass, a projection that returns linear
-//! fields: its strain is exact too. Shepard's lumped mass and the given cell means of published TLS do not return them.
+//! Source: the patch test of finite elements (Irons & Razzaque 1972), on random layouts of particles. Goal: a
+//! body under constant stress stays at rest, and a linear velocity strains every particle alike, wherever the
+//! particles are. Parameters: a box full of particles, 4 cells a side, 9 particles per cell (8 in space)
+//! moved at random within their spacing; constant stress between fixed walls for 20 steps of a tenth of a
+//! cell; one step of a linear velocity without walls. Expected: Gauss points in full cells integrate a
+//! constant exactly, so that TLS keeps the stress to round-off; particle sums do not. Relaxed TLS ends a cell
+//! where its particles end, beside a wall too where they leave more than a tenth of half a cell: layouts
+//! moved by 0.3 of the spacing are exact, wilder ones not always. It maps velocities by the particles'
+//! consistent mass, a projection that returns linear fields: its strain is exact too. Shepard's lumped mass
+//! and the given cell means of published TLS do not return them.
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint_command::run::InSpace;
@@ -101,8 +103,8 @@ fn particle_sums_do_not_integrate_a_constant() {
     }
 }
 
-/// Jittered particles leave no gap beside a wall that moments of their volumes would see. Taken for cubes they did: 4e-2 (linear),
-/// 3e-2 (dual domain) and 0.141 (B-splines) of the stress.
+/// Jittered particles leave no gap beside a wall that moments of their volumes would see. Taken for cubes
+/// they did: 4e-2 (linear), 3e-2 (dual domain) and 0.141 (B-splines) of the stress.
 #[test]
 fn relaxed_taylor_takes_no_jitter_beside_a_wall_for_a_free_side() {
     for method in with(RelaxedTaylor) {

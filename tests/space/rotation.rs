@@ -1,9 +1,10 @@
-//! Source: angular momentum and energy of a free body.
-//! Goal: what a free disc loses of both in one turn, and how fast that goes with the cells.
-//! Parameters: the compiled-in scene `spinning-disc`, 8 and 16 cells across, 9 particles per cell, 0.2 of a cell per step.
-//! Expected: internal forces of symmetric stresses have no moment about any point (the grid's functions return linear fields), and moving
-//! particles with the mapped velocity keeps the angular momentum. But a particle is accelerated by forces over *lumped* masses,
-//! which take it to its nodes: its moment is lost where particles do not lie evenly about them, at the free side.
+//! Source: angular momentum and energy of a free body. Goal: what a free disc loses of both in one turn, and
+//! how fast that goes with the cells. Parameters: the compiled-in scene `spinning-disc`, 8 and 16 cells
+//! across, 9 particles per cell, 0.2 of a cell per step. Expected: internal forces of symmetric stresses have
+//! no moment about any point (the grid's functions return linear fields), and moving particles with the
+//! mapped velocity keeps the angular momentum. But a particle is accelerated by forces over *lumped* masses,
+//! which take it to its nodes: its moment is lost where particles do not lie evenly about them, at the free
+//! side.
 
 use materialpoint::error::StepError;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
@@ -109,8 +110,8 @@ fn the_loss_is_not_the_time_step_s() {
     assert!((half / quarter - 1.0).abs() < 0.1, "{half} {quarter}");
 }
 
-/// Consistent mass, in the acceleration too, and a ghost penalty that vanishes on rotations: nothing of the angular momentum is lost.
-/// Measured: 2e-14 (4e-14 with 24 cells); energy from 0.9995 to 1.0001.
+/// Consistent mass, in the acceleration too, and a ghost penalty that vanishes on rotations: nothing of the
+/// angular momentum is lost. Measured: 2e-14 (4e-14 with 24 cells); energy from 0.9995 to 1.0001.
 fn check_relaxed(cells: usize) {
     for basis in BASES {
         let relaxed = spin(Method::new(basis, ReconstructionKind::RelaxedTaylor), cells, &[]);

@@ -1,12 +1,13 @@
-//! Source: Coulomb's law and Signorini's conditions; a Lagrangian finite element model of the same block where said.
-//! Goal: a wall that lets go and rubs holds what rests on it, slows what slides by its law alone, and never gives energy.
-//! Parameters: blocks of E = 10 MPa and 2000 kg/m3, 1 m x 0.5 m (or 2 m x 0.25 m), two particles per cell and axis (relaxed TLS three), four
-//! cells high, on a floor under gravity that is turned by an angle and either comes on within 0.2 s or acts at once; half the critical step.
-//! Expected: the wall's work against friction is never positive (in one step at most what the solution of the contact problem
-//! leaves, 1e-8 J beside some 1 J). With gravity within 0.2 s the flat block on 30 degrees and mu = 0.7 slips at most
-//! 2e-5 m (finite elements 9.1e-6 m), at 15 degrees nothing slips or lifts. Applied at once gravity makes the normal force a wave
-//! that returns to zero, so that elastic blocks slip and bounce for physical reasons. While all of a block slides,
-//! v_x + mu v_y = g (sin a - mu cos a) t.
+//! Source: Coulomb's law and Signorini's conditions; a Lagrangian finite element model of the same block
+//! where said. Goal: a wall that lets go and rubs holds what rests on it, slows what slides by its law alone,
+//! and never gives energy. Parameters: blocks of E = 10 MPa and 2000 kg/m3, 1 m x 0.5 m (or 2 m x 0.25 m),
+//! two particles per cell and axis (relaxed TLS three), four cells high, on a floor under gravity that is
+//! turned by an angle and either comes on within 0.2 s or acts at once; half the critical step. Expected: the
+//! wall's work against friction is never positive (in one step at most what the solution of the contact
+//! problem leaves, 1e-8 J beside some 1 J). With gravity within 0.2 s the flat block on 30 degrees and mu =
+//! 0.7 slips at most 2e-5 m (finite elements 9.1e-6 m), at 15 degrees nothing slips or lifts. Applied at once
+//! gravity makes the normal force a wave that returns to zero, so that elastic blocks slip and bounce for
+//! physical reasons. While all of a block slides, v_x + mu v_y = g (sin a - mu cos a) t.
 
 use std::array::from_fn;
 
@@ -77,7 +78,8 @@ struct Found {
     time: f64,
 }
 
-/// The block in as many dimensions as there are: the floor is the lower face of the last axis, the slope falls along axis 0.
+/// The block in as many dimensions as there are: the floor is the lower face of the last axis, the slope
+/// falls along axis 0.
 fn run<const D: usize, B, R>(basis: B, reconstruction: R, case: &Case) -> Found
 where
     B: BasisFamily<f64, D>,
@@ -214,7 +216,8 @@ fn with_every_basis(case: &Case, check: impl Fn(&str, &Found)) {
     }
 }
 
-/// The same for relaxed TLS, whose mapping is asked for its response: three particles a side, up to `end` (s).
+/// The same for relaxed TLS, whose mapping is asked for its response: three particles a side, up to `end`
+/// (s).
 fn with_relaxed_fits(case: &Case, end: f64, check: impl Fn(&str, &Found)) {
     let case = &Case {
         particles_per_cell: 3,
@@ -268,7 +271,8 @@ fn a_block_on_a_slope_slips_at_its_heel_and_rests() {
     }
 }
 
-/// Applied at once gravity lets the block slip and bounce: a finite element model of it slips by 1.9e-3 m in 2 s.
+/// Applied at once gravity lets the block slip and bounce: a finite element model of it slips by 1.9e-3 m in
+/// 2 s.
 #[test]
 fn gravity_applied_at_once_lets_a_block_slip_by_little() {
     for (end, most) in [(0.1, 9e-4), (2.0, 3e-3)] {
@@ -294,7 +298,8 @@ fn what_rests_on_a_floor_gains_nothing_and_stays() {
         ..BLOCK
     };
     with_every_basis(&rest, |name, found| {
-        // Gravity releases at most its work on twice the settlement, (rho g h)^2 / (3 E') of the volume: free sides.
+        // Gravity releases at most its work on twice the settlement, (rho g h)^2 / (3 E') of the volume: free
+        // sides.
         let m = 1e7 / (1.0 - 0.3 * 0.3);
         let released = 2.0 * (2000.0_f64 * 9.81 * 0.5).powi(2) / (3.0 * m) * 0.5;
         assert!(found.energy[1] < released, "{name}: {found:?} {released}");

@@ -1,9 +1,10 @@
-//! Source: the column of one dimension (`tests/two_phase/column.rs`), whose references are exact.
-//! Goal: scenes of two phases run in the plane; a wide column of saturated soil is the column of one dimension.
-//! Parameters: a column 1 m high and 0.3 m wide between smooth walls, drained at the top, loaded there by 10 kPa, Poisson's ratio
-//! 0.2; 10 cells high, 2 and 4 particles per cell and axis; 0.05 s.
-//! Expected: pressure and effective stress of the line within 1 % (measured 0.65 % at most); with TLS on B-splines the pressure varies across
-//! by 19 % of its largest, because Gauss forces over lumped masses differ from wall to middle. Both phases keep their mass.
+//! Source: the column of one dimension (`tests/two_phase/column.rs`), whose references are exact. Goal:
+//! scenes of two phases run in the plane; a wide column of saturated soil is the column of one dimension.
+//! Parameters: a column 1 m high and 0.3 m wide between smooth walls, drained at the top, loaded there by 10
+//! kPa, Poisson's ratio 0.2; 10 cells high, 2 and 4 particles per cell and axis; 0.05 s. Expected: pressure
+//! and effective stress of the line within 1 % (measured 0.65 % at most); with TLS on B-splines the pressure
+//! varies across by 19 % of its largest, because Gauss forces over lumped masses differ from wall to middle.
+//! Both phases keep their mass.
 
 use materialpoint_command::run::{run, run_in};
 

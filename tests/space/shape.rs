@@ -1,8 +1,9 @@
-//! Goal: what shape cells and particles have, which way axes run and in which order particles are given does not matter.
-//! Source: a field that does not vary across cannot know how wide a cell is; the balance of momentum knows no axis but gravity's.
-//! Parameters: soil at rest under its weight between smooth walls, on cells 1:8 to 8:1 with unequal numbers of particles along the axes;
-//! a block that turns, swells and leaves a corner of two smooth walls, its mirror image, and the same with axes exchanged.
-//! Expected: stresses that balance the weight leave the soil at rest; images are images of each other, to the digits of the solver.
+//! Goal: what shape cells and particles have, which way axes run and in which order particles are given does
+//! not matter. Source: a field that does not vary across cannot know how wide a cell is; the balance of
+//! momentum knows no axis but gravity's. Parameters: soil at rest under its weight between smooth walls, on
+//! cells 1:8 to 8:1 with unequal numbers of particles along the axes; a block that turns, swells and leaves a
+//! corner of two smooth walls, its mirror image, and the same with axes exchanged. Expected: stresses that
+//! balance the weight leave the soil at rest; images are images of each other, to the digits of the solver.
 
 use materialpoint::basis::{BSpline, BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid, Side};
@@ -76,10 +77,11 @@ fn run(text: &str, [basis, reconstruction]: [&str; 2], set: &[String]) -> Partic
         .particles
 }
 
-/// Acceleration in units of gravity, root mean square. Nothing where both force and masses are exact: fits hold a stress with a slope,
-/// particle sums and masses of linear functions are midpoint sums of lines. B-splines have masses that are midpoint sums of parabolas, dual
-/// domain with particle sums a force of smoothed slopes: up to 0.18, with one cell across. Cells that were cut where particles taken for
-/// cubes seemed to end gave 0.25 with linear functions and 0.33 to 0.76 with B-splines.
+/// Acceleration in units of gravity, root mean square. Nothing where both force and masses are exact: fits
+/// hold a stress with a slope, particle sums and masses of linear functions are midpoint sums of lines.
+/// B-splines have masses that are midpoint sums of parabolas, dual domain with particle sums a force of
+/// smoothed slopes: up to 0.18, with one cell across. Cells that were cut where particles taken for cubes
+/// seemed to end gave 0.25 with linear functions and 0.33 to 0.76 with B-splines.
 #[test]
 fn soil_at_rest_stays_there_whatever_the_shape_of_cells_and_particles() {
     let shapes = [
@@ -211,8 +213,8 @@ fn images_are_images_of_each_other() {
     }
 }
 
-/// Positions and stresses after some steps of a block in a corner, whose particles are given in the order `numbers` of their lattice, in
-/// that of the lattice.
+/// Positions and stresses after some steps of a block in a corner, whose particles are given in the order
+/// `numbers` of their lattice, in that of the lattice.
 fn stepped<B>(basis: B, numbers: &[usize]) -> Vec<(SVector<f64, 2>, SMatrix<f64, 2, 2>)>
 where
     B: BasisFamily<f64, 2>,

@@ -1,8 +1,8 @@
-//! Source: Bishop & Morgenstern (1960), factor of safety 1.380; Griffiths & Lane (1999), example 1: 1.4 by finite elements.
-//! Goal: Drucker-Prager clay under gravity stands as long as limit equilibrium says, and slides beyond.
-//! Parameters: the compiled-in scene `slope` with its strength over a factor F; 880 particles, gravity within 1 s, 4 s.
-//! Expected: F = 1.3 moves by millimetres; what F = 1.45 and 1.6 slide, less than linear creep, extrapolates to nothing at
-//! 1.40 (with cells half as large at 1.37).
+//! Source: Bishop & Morgenstern (1960), factor of safety 1.380; Griffiths & Lane (1999), example 1: 1.4 by
+//! finite elements. Goal: Drucker-Prager clay under gravity stands as long as limit equilibrium says, and
+//! slides beyond. Parameters: the compiled-in scene `slope` with its strength over a factor F; 880 particles,
+//! gravity within 1 s, 4 s. Expected: F = 1.3 moves by millimetres; what F = 1.45 and 1.6 slide, less than
+//! linear creep, extrapolates to nothing at 1.40 (with cells half as large at 1.37).
 
 use materialpoint_command::run::run_in;
 use materialpoint_command::scene::Scene;

@@ -1,9 +1,10 @@
-//! Source: Galilei.
-//! Goal: a body without stress that moves or falls freely stays as it is, wherever it lies in its cells, in two and three dimensions.
-//! Parameters: a box whose sides fit no cell, particles moved at random, crosses a cell and a half on a slant; the same under a body force.
-//! Expected: equal velocities map to equal velocities where mass and momentum are both sums over the particles (Shepard, relaxed TLS), and cause
-//! no strain: exact to round-off. Published TLS fits mass and momentum by the same functions, also beyond the body's sides, where it knows no
-//! surface beyond one dimension: as exact, since its densities are positive.
+//! Source: Galilei. Goal: a body without stress that moves or falls freely stays as it is, wherever it lies
+//! in its cells, in two and three dimensions. Parameters: a box whose sides fit no cell, particles moved at
+//! random, crosses a cell and a half on a slant; the same under a body force. Expected: equal velocities map
+//! to equal velocities where mass and momentum are both sums over the particles (Shepard, relaxed TLS), and
+//! cause no strain: exact to round-off. Published TLS fits mass and momentum by the same functions, also
+//! beyond the body's sides, where it knows no surface beyond one dimension: as exact, since its densities are
+//! positive.
 
 use materialpoint::error::StepError;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
@@ -50,7 +51,8 @@ const IN_SPACE: [&str; 3] = [
     "time.step=5e-3",
 ];
 
-/// Largest departures of velocity and stress from what is exact, over the speed and the modulus, of all particles and times.
+/// Largest departures of velocity and stress from what is exact, over the speed and the modulus, of all
+/// particles and times.
 fn departures<const D: usize>(scene: &Scene, velocity: SVector<f64, D>) -> Result<[f64; 2], StepError>
 where
     Scene: InSpace<D>,
@@ -117,8 +119,8 @@ fn relaxed_taylor_falls_exactly_in_the_plane() {
     }
 }
 
-/// Measured: 3e-15 at most. With densities that may be negative it lost 1.6e-4 (linear), 4.6e-5 (dual domain) and 7e-6 (B-splines) of the
-/// speed in the plane: the matrix of the masses was not positive.
+/// Measured: 3e-15 at most. With densities that may be negative it lost 1.6e-4 (linear), 4.6e-5 (dual domain)
+/// and 7e-6 (B-splines) of the speed in the plane: the matrix of the masses was not positive.
 #[test]
 fn published_taylor_moves_exactly() {
     for (method, found) in flights(Taylor, FREE) {

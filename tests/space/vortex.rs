@@ -1,10 +1,11 @@
-//! Source: Brannon, Kamojjala & Sadeghirad (2011); Kamojjala, Brannon, Sadeghirad & Guilkey (2015). The body force is derived in
-//! `reference::Vortex` and checked there by differences.
-//! Goal: large shear and rotation of a free ring, of which no side fits the grid, and of the same ring within a block.
-//! Parameters: the compiled-in scene `vortex`: angle 0.2 (shear up to 1.2), 24 and 48 cells, 4 and 8 of them across the ring; 9 particles
-//! per cell; to the time at which it is half of the way back. The block is at rest around the ring, its faces fixed.
-//! Expected: mass and momentum at round-off; relative L2 errors of the stress as measured, within 10 %. Published TLS stops at a free side that cuts cells; in the block it
-//! runs. Linear Shepard stalls at cell crossings, B-splines are of second order from 48 cells on.
+//! Source: Brannon, Kamojjala & Sadeghirad (2011); Kamojjala, Brannon, Sadeghirad & Guilkey (2015). The body
+//! force is derived in `reference::Vortex` and checked there by differences. Goal: large shear and rotation
+//! of a free ring, of which no side fits the grid, and of the same ring within a block. Parameters: the
+//! compiled-in scene `vortex`: angle 0.2 (shear up to 1.2), 24 and 48 cells, 4 and 8 of them across the ring;
+//! 9 particles per cell; to the time at which it is half of the way back. The block is at rest around the
+//! ring, its faces fixed. Expected: mass and momentum at round-off; relative L2 errors of the stress as
+//! measured, within 10 %. Published TLS stops at a free side that cuts cells; in the block it runs. Linear
+//! Shepard stalls at cell crossings, B-splines are of second order from 48 cells on.
 
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint_command::run::{RunError, run_in};

@@ -1,9 +1,9 @@
-//! Source: Coulomb's law; Bardenhagen, Brackbill & Sulsky (2000).
-//! Goal: a frictional wall holds a block up, slows it by mu g while it slides, stops it, and lets go of what moves away.
-//! Parameters: a stiff block of 0.4 m x 0.2 m on the floor y = 0 under g = 10 m/s2, started along x at 1 m/s.
-//! Expected: while all of it slides the wall's forces are N and mu N, so the mean velocity along is 1 - mu (g t + up), where `up` is the mean
-//! velocity up: the block vibrates as its weight comes on, at most with g h / c_p = 0.19 m/s. Stopped, it is left with a vibration
-//! in shear of at most mu g h / c_s = 0.19 m/s.
+//! Source: Coulomb's law; Bardenhagen, Brackbill & Sulsky (2000). Goal: a frictional wall holds a block up,
+//! slows it by mu g while it slides, stops it, and lets go of what moves away. Parameters: a stiff block of
+//! 0.4 m x 0.2 m on the floor y = 0 under g = 10 m/s2, started along x at 1 m/s. Expected: while all of it
+//! slides the wall's forces are N and mu N, so the mean velocity along is 1 - mu (g t + up), where `up` is
+//! the mean velocity up: the block vibrates as its weight comes on, at most with g h / c_p = 0.19 m/s.
+//! Stopped, it is left with a vibration in shear of at most mu g h / c_s = 0.19 m/s.
 
 use materialpoint_command::run::{InSpace, Summary, run_in};
 use materialpoint_command::scene::Scene;
@@ -146,7 +146,8 @@ friction = 0
     }
 }
 
-/// Two walls meet at a corner: no load, so nothing gives energy, and the splash is symmetric about the diagonal.
+/// Two walls meet at a corner: no load, so nothing gives energy, and the splash is symmetric about the
+/// diagonal.
 #[test]
 fn water_thrown_into_a_corner_gains_nothing() {
     const SPLASH: &str = r#"
@@ -228,8 +229,8 @@ friction = 0
     }
 }
 
-/// In equilibrium with what presses, the part of gravity along the slope comes on within 0.2 s: the block slides with
-/// g_x - mu g_y, or slips a little and rests.
+/// In equilibrium with what presses, the part of gravity along the slope comes on within 0.2 s: the block
+/// slides with g_x - mu g_y, or slips a little and rests.
 #[test]
 fn a_block_slides_down_a_slope_as_a_rigid_one_does() {
     const SLOPE: &str = r#"
@@ -270,7 +271,8 @@ friction = 0.3
     }
 }
 
-/// At rest on a floor that rubs a block has the energy that it has on one that is fixed, in the plane and in space.
+/// At rest on a floor that rubs a block has the energy that it has on one that is fixed, in the plane and in
+/// space.
 #[test]
 fn a_block_at_rest_has_the_energy_of_one_that_is_held() {
     const REST: &str = r#"
@@ -311,8 +313,9 @@ friction = 0.3
     assert!((0.85..1.15).contains(&(last / rest)), "space: {last}, {rest}");
 }
 
-/// A cube thrown at a floor in space. While it slides, friction takes `mu` of what the floor gives upwards, and it still slides when
-/// it lets go: 0.3 * 1.7 < 0.71. With two B-splines' particles a cell the floor's operator is next to singular.
+/// A cube thrown at a floor in space. While it slides, friction takes `mu` of what the floor gives upwards,
+/// and it still slides when it lets go: 0.3 * 1.7 < 0.71. With two B-splines' particles a cell the floor's
+/// operator is next to singular.
 #[test]
 fn a_cube_in_space_is_slowed_in_proportion_to_its_impact() {
     const CUBE: &str = r#"

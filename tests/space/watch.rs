@@ -47,7 +47,8 @@ where
     Ok(simulation)
 }
 
-/// Total momentum (kg m/s) and angular momentum (kg m2/s) about the origin, and their scales `sum m |v|` and `sum m |x| |v|`.
+/// Total momentum (kg m/s) and angular momentum (kg m2/s) about the origin, and their scales `sum m |v|` and
+/// `sum m |x| |v|`.
 #[derive(Clone, Copy, Debug)]
 pub struct Momenta {
     pub linear: SVector<f64, 2>,

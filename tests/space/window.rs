@@ -1,8 +1,7 @@
-//! Source: our own.
-//! Goal: a body in a grid that is much larger than itself takes work and memory in proportion to the body, and does exactly
-//! what it does where all of the grid has numbers.
-//! Parameters: a disc that spins and flies through some 40 cells, all bases; a ball in a grid of 1e9 cells.
-//! Expected: equal bits, but for what a consistent mass is solved to; less than 1 kB for each particle.
+//! Source: our own. Goal: a body in a grid that is much larger than itself takes work and memory in
+//! proportion to the body, and does exactly what it does where all of the grid has numbers. Parameters: a
+//! disc that spins and flies through some 40 cells, all bases; a ball in a grid of 1e9 cells. Expected: equal
+//! bits, but for what a consistent mass is solved to; less than 1 kB for each particle.
 
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, FixedPoints, Linear};
 use materialpoint::grid::{Cell, Grid};

@@ -197,7 +197,8 @@ pub const FIELDS: [(&str, Field); 5] = [
     ("p", |s| s.pore_pressure),
 ];
 
-/// RMS and relative L2 errors of the five fields: displacement and stresses at `end`, velocities at `velocity_time`.
+/// RMS and relative L2 errors of the five fields: displacement and stresses at `end`, velocities at
+/// `velocity_time`.
 pub fn errors(
     simulation: &dyn Simulation<1>,
     reference: &mut dyn TwoPhaseReference,

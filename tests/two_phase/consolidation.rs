@@ -1,10 +1,12 @@
 //! Consolidation at small strain: the run that measures the method.
 //!
-//! Report 18-2, Table 6, with k = 1e-4 m/s: the exact series at 0.5 s is the start, the run ends at 1.0 s, steps of 5e-6 s, 4
-//! particles per cell. (The report's own run of 20 steps of 1e-10 s measures its initial data.)
+//! Report 18-2, Table 6, with k = 1e-4 m/s: the exact series at 0.5 s is the start, the run ends at 1.0 s,
+//! steps of 5e-6 s, 4 particles per cell. (The report's own run of 20 steps of 1e-10 s measures its initial
+//! data.)
 //!
-//! Expected: relative L2 errors at 20 cells as an independent prototype measured them, second order for the displacement,
-//! first for the stresses with linear functions, second with quadratic B-splines; mass and momentum of both phases kept.
+//! Expected: relative L2 errors at 20 cells as an independent prototype measured them, second order for the
+//! displacement, first for the stresses with linear functions, second with quadratic B-splines; mass and
+//! momentum of both phases kept.
 
 use materialpoint::mass::VelocityMass;
 use materialpoint::method::{Basis, Method, ReconstructionKind};
@@ -25,8 +27,8 @@ const SHEPARD: ReconstructionKind = ReconstructionKind::Shepard;
 const TAYLOR: ReconstructionKind = ReconstructionKind::Taylor;
 const SPLINE: ReconstructionKind = ReconstructionKind::Spline;
 
-/// Errors of displacement, liquid velocity, pressure and effective stress; the prototype has none of its own for the spline with
-/// dual domain and B-splines, where those of TLS stand.
+/// Errors of displacement, liquid velocity, pressure and effective stress; the prototype has none of its own
+/// for the spline with dual domain and B-splines, where those of TLS stand.
 const TABLE: [(Basis, ReconstructionKind, [f64; 4]); 9] = [
     (LINEAR, SHEPARD, [8.5e-4, 0.95e-3, 6.9e-3, 1.1e-2]),
     (LINEAR, TAYLOR, [8.6e-4, 1.3e-3, 6.9e-3, 1.1e-2]),
@@ -131,7 +133,8 @@ const RELAXED: [(Basis, [f64; 4], [f64; 4]); 3] = [
     ),
 ];
 
-/// Measured; with B-splines 1/87, 1/31, 1/4 of published TLS at 20 cells, with linear functions 1/17 in the stresses.
+/// Measured; with B-splines 1/87, 1/31, 1/4 of published TLS at 20 cells, with linear functions 1/17 in the
+/// stresses.
 #[test]
 fn relaxed_tls_has_smaller_errors() {
     for (basis, coarse, fine) in RELAXED {
@@ -165,9 +168,9 @@ fn b_splines_have_the_errors_of_the_table() {
     compare(BSPLINE);
 }
 
-/// A fixed base that liquid passes (k = 1e-4 m/s, from 0.5 s to 0.6 s): the layer drains to both sides, like two layers of half the
-/// height back to back that move with the middle. Expected: the series of half the height, with the errors of twice as coarse a
-/// grid.
+/// A fixed base that liquid passes (k = 1e-4 m/s, from 0.5 s to 0.6 s): the layer drains to both sides, like
+/// two layers of half the height back to back that move with the middle. Expected: the series of half the
+/// height, with the errors of twice as coarse a grid.
 #[test]
 fn a_drained_wall_lets_the_layer_drain_to_both_sides() {
     let (soil, law) = table_6(1e-4);

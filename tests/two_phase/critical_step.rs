@@ -1,10 +1,12 @@
 //! The predicted critical step against the running scheme.
 //!
-//! Column of Table 6, 20 cells, 4 particles per cell, lumped velocity mass, started from noise; a run is unstable if its
-//! energy has grown a thousandfold after 3000 steps. Permeability from 1e-1 to 1e-9 m/s, all nine methods, both drags.
+//! Column of Table 6, 20 cells, 4 particles per cell, lumped velocity mass, started from noise; a run is
+//! unstable if its energy has grown a thousandfold after 3000 steps. Permeability from 1e-1 to 1e-9 m/s, all
+//! nine methods, both drags.
 //!
-//! Expected: limited by the drag, stable at 0.95 of the prediction and unstable at 1.05; limited by the wave, stable at 0.95 and
-//! unstable at 1.08 (the prediction joins the largest eigenvalue of the grid's part with the two-phase material).
+//! Expected: limited by the drag, stable at 0.95 of the prediction and unstable at 1.05; limited by the wave,
+//! stable at 0.95 and unstable at 1.08 (the prediction joins the largest eigenvalue of the grid's part with
+//! the two-phase material).
 
 use materialpoint::law::LinearElastic;
 use materialpoint::mass::VelocityMass;

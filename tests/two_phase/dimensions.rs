@@ -1,7 +1,7 @@
 //! Two phases in two dimensions: the column lying in a strip.
 //!
-//! Walls on all sides, rollers along the strip, Poisson's ratio 0, a motion along x only: every particle of the strip must do what
-//! the column's particle at its x does, to round-off.
+//! Walls on all sides, rollers along the strip, Poisson's ratio 0, a motion along x only: every particle of
+//! the strip must do what the column's particle at its x does, to round-off.
 
 use materialpoint::basis::{BSpline, BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid};
@@ -24,7 +24,8 @@ const PHASE: TwoPhase<f64> = TwoPhase {
     drag: Drag::Implicit,
 };
 
-/// Velocities along x, effective stress, pressure, largest conservation errors of the particles of the lowest row.
+/// Velocities along x, effective stress, pressure, largest conservation errors of the particles of the lowest
+/// row.
 fn run<const D: usize, B, R>(basis: B, reconstruction: R, mass: VelocityMass) -> (Vec<[f64; 4]>, f64)
 where
     B: BasisFamily<f64, D>,

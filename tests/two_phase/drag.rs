@@ -1,10 +1,12 @@
 //! Point-implicit drag against explicit drag where the drag is stiff.
 //!
-//! k = 1e-9 m/s: the explicit step is limited to 4.06e-10 s, the wave allows 5e4 times more. A quarter of a standing wave, 20
-//! cells, to 4e-4 s (a tenth of a period). Velocities start at the time where they live, half a step before the stresses.
+//! k = 1e-9 m/s: the explicit step is limited to 4.06e-10 s, the wave allows 5e4 times more. A quarter of a
+//! standing wave, 20 cells, to 4e-4 s (a tenth of a period). Velocities start at the time where they live,
+//! half a step before the stresses.
 //!
-//! Expected: pressure and displacement of the implicit run at the wave's step differ from the resolved explicit run by no more
-//! than the scheme's own error in time, (omega dt)^2 / 24 relative and less, far below its error in space.
+//! Expected: pressure and displacement of the implicit run at the wave's step differ from the resolved
+//! explicit run by no more than the scheme's own error in time, (omega dt)^2 / 24 relative and less, far
+//! below its error in space.
 
 use materialpoint::mass::VelocityMass;
 use materialpoint::method::Method;

@@ -1,4 +1,5 @@
-//! Equilibria that are known exactly: a column under its own weight, and a sudden load that nothing can drain.
+//! Equilibria that are known exactly: a column under its own weight, and a sudden load that nothing can
+//! drain.
 
 use materialpoint::law::LinearElastic;
 use materialpoint::mass::VelocityMass;
@@ -28,8 +29,8 @@ fn column(permeability: f64, per_cell: usize) -> Column<LinearElastic<f64>> {
     }
 }
 
-/// Mean of the fit of a field in each cell: of a linear field its mean over the particles, and what the force of TLS
-/// integrates.
+/// Mean of the fit of a field in each cell: of a linear field its mean over the particles, and what the force
+/// of TLS integrates.
 fn cell_means(simulation: &dyn Simulation<1>, per_cell: usize, field: Field) -> Vec<f64> {
     let values: Vec<f64> = fields(simulation).iter().map(field).collect();
     let positions = simulation.particles().position;
@@ -47,8 +48,9 @@ fn cell_means(simulation: &dyn Simulation<1>, per_cell: usize, field: Field) -> 
         .collect()
 }
 
-/// Largest errors of the cell means of p and sigma' over their largest values, in a column that its own weight has brought to
-/// rest: gravity (so small that the column's shape does not change) grows smoothly over 0.2 s, k = 1e-2 m/s damps.
+/// Largest errors of the cell means of p and sigma' over their largest values, in a column that its own
+/// weight has brought to rest: gravity (so small that the column's shape does not change) grows smoothly over
+/// 0.2 s, k = 1e-2 m/s damps.
 fn self_weight(method: Method, per_cell: usize) -> [f64; 2] {
     let gravity = 1e-5;
     let column = column(1e-2, per_cell);
@@ -77,12 +79,13 @@ fn self_weight(method: Method, per_cell: usize) -> [f64; 2] {
     })
 }
 
-/// Self-weight from zero to equilibrium. Exact: p = -rho_w g (H - x), sigma' = -(1 - n)(rho_s - rho_w) g (H - x), linear, so cell
-/// means are the values at the centres.
+/// Self-weight from zero to equilibrium. Exact: p = -rho_w g (H - x), sigma' = -(1 - n)(rho_s - rho_w) g (H -
+/// x), linear, so cell means are the values at the centres.
 ///
-/// Expected: exact to 1e-6 with linear functions, and with dual domain and TLS. The others cannot be: the weight that a DOF
-/// bears is the sum of m_p phi_i(x_p), which at the ends of a B-spline's grid is not the integral of phi_i (an error that falls
-/// with the square of the particles per cell), and dual domain with Shepard integrates smoothed gradients at the particles.
+/// Expected: exact to 1e-6 with linear functions, and with dual domain and TLS. The others cannot be: the
+/// weight that a DOF bears is the sum of m_p phi_i(x_p), which at the ends of a B-spline's grid is not the
+/// integral of phi_i (an error that falls with the square of the particles per cell), and dual domain with
+/// Shepard integrates smoothed gradients at the particles.
 #[test]
 fn a_column_under_its_own_weight_has_exact_cell_means() {
     for method in Method::ALL {
@@ -109,8 +112,9 @@ fn what_b_splines_miss_of_the_weight_falls_with_the_square_of_the_particles_per_
     assert!((3.5..4.5).contains(&(few / many)), "{few:.2e} {many:.2e}");
 }
 
-/// A fixed base that liquid passes, with the pressure of still water outside: a column in equilibrium stays so, although its base
-/// bears the grains' weight and the liquid's DOF there is free. Expected: velocities of round-off.
+/// A fixed base that liquid passes, with the pressure of still water outside: a column in equilibrium stays
+/// so, although its base bears the grains' weight and the liquid's DOF there is free. Expected: velocities of
+/// round-off.
 #[test]
 fn still_water_outside_a_drained_wall_keeps_the_column_at_rest() {
     let column = column(1e-4, PER_CELL);
@@ -135,8 +139,9 @@ fn still_water_outside_a_drained_wall_keeps_the_column_at_rest() {
     }
 }
 
-/// A sudden load on a column that cannot drain (k = 1e-9 m/s): the liquid takes K/n / (E + K/n) of every stress, also while
-/// the wave runs. Expected: within 1 % in every particle that feels the load, the drained layer at the top left out.
+/// A sudden load on a column that cannot drain (k = 1e-9 m/s): the liquid takes K/n / (E + K/n) of every
+/// stress, also while the wave runs. Expected: within 1 % in every particle that feels the load, the drained
+/// layer at the top left out.
 #[test]
 fn a_sudden_load_is_taken_by_the_liquid() {
     for method in Method::ALL {
@@ -150,7 +155,8 @@ fn a_sudden_load_is_taken_by_the_liquid() {
     }
 }
 
-/// The same with a top that the liquid does not pass, and any permeability: nothing drains anywhere, up to the surface.
+/// The same with a top that the liquid does not pass, and any permeability: nothing drains anywhere, up to
+/// the surface.
 #[test]
 fn a_sealed_surface_lets_no_liquid_pass() {
     let sealed = Forcing::none()

@@ -1,11 +1,13 @@
 //! Consolidation at large strain: particles cross cells, the loaded surface sinks through them.
 //!
-//! Report 18-2, Table 7, with the logarithmic law, k = k0 lambda^2, k0 = 3.68e-4 m/s, 120 cells, 16 particles per cell, 0.4 s. Exact
-//! without inertia: Xie & Leo with a compressible liquid, a settlement of -5.4027e-2 m.
+//! Report 18-2, Table 7, with the logarithmic law, k = k0 lambda^2, k0 = 3.68e-4 m/s, 120 cells, 16 particles
+//! per cell, 0.4 s. Exact without inertia: Xie & Leo with a compressible liquid, a settlement of -5.4027e-2
+//! m.
 //!
-//! Expected: errors of TLS with all three bases and of Shepard with B-splines at most 1.5 times those of an independent prototype
-//! (explicit drag, steps of 4e-6 s), settlement within 0.3 %, the total stress of the topmost particle within 5 % of the load for
-//! TLS, mass and momentum of both phases kept. The default tier takes the implicit drag at steps of 1e-5 s, with the same errors.
+//! Expected: errors of TLS with all three bases and of Shepard with B-splines at most 1.5 times those of an
+//! independent prototype (explicit drag, steps of 4e-6 s), settlement within 0.3 %, the total stress of the
+//! topmost particle within 5 % of the load for TLS, mass and momentum of both phases kept. The default tier
+//! takes the implicit drag at steps of 1e-5 s, with the same errors.
 
 use materialpoint::law::{Logarithmic, Moduli};
 use materialpoint::mass::VelocityMass;
@@ -92,7 +94,8 @@ fn run(method: Method, permeability: f64, drag: Drag, mass: VelocityMass, step: 
 
 /// Basis, reconstruction, the prototype's errors of effective stress and pressure.
 const TABLE: [(Basis, ReconstructionKind, f64, f64); 7] = [
-    // Our own, without a prototype: of the pressure's error only the inertia is left, which the exact solution does not know.
+    // Our own, without a prototype: of the pressure's error only the inertia is left, which the exact
+    // solution does not know.
     (LINEAR, RELAXED, 1.7e-3, 4.2e-3),
     (DUAL_DOMAIN, RELAXED, 8.3e-4, 4.2e-3),
     // What the fits with the neighbours creep, in proportion to the motion of a cell's particles. The motion
@@ -148,8 +151,9 @@ fn errors_are_those_of_the_table_and_the_surface_bears_its_load() {
     check(3.68e-4, -5.402679e-2, |_| 3e-3);
 }
 
-/// Table 7's printed k = 1e-5: a settlement of -8.906e-3 m, not the printed 5.4e-2. The drained layer is two and a half cells
-/// deep, hence 1 to 1.7 % of error, with relaxed TLS and linear functions or dual domain 2.6 and 2.5 %: there neighbours differ most.
+/// Table 7's printed k = 1e-5: a settlement of -8.906e-3 m, not the printed 5.4e-2. The drained layer is two
+/// and a half cells deep, hence 1 to 1.7 % of error, with relaxed TLS and linear functions or dual domain 2.6
+/// and 2.5 %: there neighbours differ most.
 #[test]
 #[ignore = "40 s: cargo test --release the_printed_permeability -- --ignored"]
 fn the_printed_permeability_settles_six_times_less() {

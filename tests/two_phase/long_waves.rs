@@ -1,12 +1,12 @@
 //! Undrained waves to and fro through the grid for long: who keeps their energy.
 //!
-//! A layer between two walls (40 cells, K_w = 3e6 Pa, E = 1e6 Pa, k = 1e-9 m/s: next to no drag losses), logarithmic law, started with
-//! v = sin(pi x) m/s of both phases: a strain of 1.5 %, particles that cross edges all the time, twenty periods in 0.6 s. The wave
-//! has not broken by then, so the energy is constant.
+//! A layer between two walls (40 cells, K_w = 3e6 Pa, E = 1e6 Pa, k = 1e-9 m/s: next to no drag losses),
+//! logarithmic law, started with v = sin(pi x) m/s of both phases: a strain of 1.5 %, particles that cross
+//! edges all the time, twenty periods in 0.6 s. The wave has not broken by then, so the energy is constant.
 //!
-//! Expected: published TLS ends in an error with four per cell, with eight at 2 and 785 times its energy (linear, dual domain; B-splines
-//! gain later). Relaxed TLS stays within 0.985 and 1.006 of it (0.5 % are the half step by which velocities lag), but for
-//! linear functions, which gain 1.8 and 2.2 %.
+//! Expected: published TLS ends in an error with four per cell, with eight at 2 and 785 times its energy
+//! (linear, dual domain; B-splines gain later). Relaxed TLS stays within 0.985 and 1.006 of it (0.5 % are the
+//! half step by which velocities lag), but for linear functions, which gain 1.8 and 2.2 %.
 
 use materialpoint::law::{Logarithmic, Moduli};
 use materialpoint::mass::VelocityMass;

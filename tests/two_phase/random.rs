@@ -1,9 +1,10 @@
-//! Random saturated scenes: porosity 0.01 to 0.99, permeability 1e-12 to 1 m/s, stiffness over six decades, random layouts.
+//! Random saturated scenes: porosity 0.01 to 0.99, permeability 1e-12 to 1 m/s, stiffness over six decades,
+//! random layouts.
 //!
-//! Expected: Shepard and TLS keep mass and momentum of both phases to round-off, also where a run blows up; nothing panics.
-//! At half the predicted step Shepard always runs on; published TLS and the spline may end in a typed error, because on some
-//! layouts they grow whatever the step (`docs/verification/two-phase.md`, long runs). Three times the step
-//! runs on or ends in one.
+//! Expected: Shepard and TLS keep mass and momentum of both phases to round-off, also where a run blows up;
+//! nothing panics. At half the predicted step Shepard always runs on; published TLS and the spline may end in
+//! a typed error, because on some layouts they grow whatever the step (`docs/verification/two-phase.md`, long
+//! runs). Three times the step runs on or ends in one.
 
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::Grid;

@@ -1,12 +1,14 @@
 //! A standing compression wave in a saturated column against the exact eigenvalues.
 //!
-//! Source: the 4x4 system of one spatial mode, `reference::two_phase::StandingWave`. The column of 1 m (Table 6 of report 18-2)
-//! is fixed and impermeable at its base, free and drained at its top, and swings in its first mode, a quarter of a wave:
-//! half of the wave between two walls 2 m apart. Started from the eigenvector of the weakly damped pair.
+//! Source: the 4x4 system of one spatial mode, `reference::two_phase::StandingWave`. The column of 1 m (Table
+//! 6 of report 18-2) is fixed and impermeable at its base, free and drained at its top, and swings in its
+//! first mode, a quarter of a wave: half of the wave between two walls 2 m apart. Started from the
+//! eigenvector of the weakly damped pair.
 //!
-//! Expected: fourth order for B-splines with relaxed TLS, 2e-6 with 20 cells; second order in h for all others and every permeability, frequency error at most 2e-3 with 20 cells. With
-//! lumped masses and linear functions the error is (kappa h)^2 / 24 from the stiffness and (kappa h)^2 / 12 from the mapping
-//! of the velocity, 7.7e-4 together; the consistent velocity mass has no such part.
+//! Expected: fourth order for B-splines with relaxed TLS, 2e-6 with 20 cells; second order in h for all
+//! others and every permeability, frequency error at most 2e-3 with 20 cells. With lumped masses and linear
+//! functions the error is (kappa h)^2 / 24 from the stiffness and (kappa h)^2 / 12 from the mapping of the
+//! velocity, 7.7e-4 together; the consistent velocity mass has no such part.
 
 use std::f64::consts::PI;
 
@@ -23,7 +25,8 @@ const BSPLINE_RELAXED: Method = Method::new(Basis::BSpline { degree: 2 }, Recons
 /// Samples in a period.
 const SAMPLES: usize = 40;
 
-/// Angular frequency and damping rate by the recurrence `y_(n+2) = a y_(n+1) + b y_n` in the least-squares sense.
+/// Angular frequency and damping rate by the recurrence `y_(n+2) = a y_(n+1) + b y_n` in the least-squares
+/// sense.
 fn frequency_and_damping(samples: &[f64], dt: f64) -> (f64, f64) {
     let (mut s11, mut s12, mut s22, mut r1, mut r2) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for y in samples.windows(3) {
@@ -57,7 +60,8 @@ fn errors(method: Method, permeability: f64, cells: usize) -> (f64, f64) {
     let exact = StandingWave::new(2.0, 1e7, soil, 1, 1e-6).unwrap();
     let (omega, damping) = exact.fast_wave();
     let mut simulation = column.build(method, |x| exact.at(x));
-    // The drag's error in time is of first order: a step that shrinks with h squared leaves the error in space.
+    // The drag's error in time is of first order: a step that shrinks with h squared leaves the error in
+    // space.
     let every = cells * cells / 10;
     let dt = 2.0 * PI / omega / (SAMPLES * every) as f64;
     let x0: Vec<f64> = simulation.particles().position.iter().map(|x| x[0]).collect();

@@ -1,4 +1,5 @@
-//! Two phases take the sweeps of one: threads change no bit, and neither does it matter in which order particles come.
+//! Two phases take the sweeps of one: threads change no bit, and neither does it matter in which order
+//! particles come.
 
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::grid::{Face, Grid};
@@ -24,7 +25,8 @@ const PHASE: TwoPhase<f64> = TwoPhase {
     drag: Drag::Implicit,
 };
 
-/// A full box in which solid and liquid move otherwise, crossing cells; with `shuffled` particles in no order.
+/// A full box in which solid and liquid move otherwise, crossing cells; with `shuffled` particles in no
+/// order.
 fn body<B, R>(basis: &B, reconstruction: &R, mass: VelocityMass, shuffled: bool) -> Box<dyn Simulation<2>>
 where
     B: BasisFamily<f64, 2> + Send + 'static,
@@ -61,7 +63,8 @@ where
     Box::new(stepper.unwrap())
 }
 
-/// Positions, velocities, stresses, and velocities and pressures of the liquid after some steps on so many threads.
+/// Positions, velocities, stresses, and velocities and pressures of the liquid after some steps on so many
+/// threads.
 fn run(body: impl FnOnce() -> Box<dyn Simulation<2>> + Send, threads: usize) -> Vec<f64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap().install(|| {
@@ -103,7 +106,8 @@ where
     let count = one.len() / 8;
     for p in 0..count {
         let q = p * 10_007 % count;
-        // Positions, velocities of both phases, stress and pressure: where they begin, how many, and what is round-off.
+        // Positions, velocities of both phases, stress and pressure: where they begin, how many, and what is
+        // round-off.
         for (first, each, size) in [
             (0, 2, 1e-9),
             (2, 2, 1e-9),

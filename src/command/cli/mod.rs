@@ -51,8 +51,8 @@ enum Command {
     Check {
         /// Scene file (TOML), or the name of a compiled-in scene (see `list`).
         scene: String,
-        /// Find the largest stable step of the start by power iteration on all particles instead of a bound: up to twice as
-        /// large, but some hundred steps' work.
+        /// Find the largest stable step of the start by power iteration on all particles instead of a bound:
+        /// up to twice as large, but some hundred steps' work.
         #[arg(long)]
         sharp: bool,
     },
@@ -83,15 +83,15 @@ struct Shared {
 /// Flags of a study.
 #[derive(Args, Clone, Debug, Default)]
 struct StudyFlags {
-    /// Methods: all (also without the flag), or a list of basis+reconstruction (linear+taylor,bspline3+spline);
-    /// dual-domain+shepard4 has 4 sub-points in each particle.
+    /// Methods: all (also without the flag), or a list of basis+reconstruction
+    /// (linear+taylor,bspline3+spline); dual-domain+shepard4 has 4 sub-points in each particle.
     #[arg(long)]
     methods: Option<String>,
     /// Numbers of cells.
     #[arg(long, value_delimiter = ',', value_name = "N,N,...")]
     cells: Vec<usize>,
-    /// Time each run at least this often (once unless told), in turns; the median counts. Short runs are timed until that takes
-    /// 0.1 s.
+    /// Time each run at least this often (once unless told), in turns; the median counts. Short runs are
+    /// timed until that takes 0.1 s.
     #[arg(long, value_name = "N")]
     repeat: Option<usize>,
 }
@@ -147,8 +147,9 @@ pub(crate) fn execute(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Sets the number of threads that share the work of a step; zero is rayon's word for all processors. This thread is
-/// one of them: else it would have to send all that is to be shared to the others, and sleep meanwhile.
+/// Sets the number of threads that share the work of a step; zero is rayon's word for all processors. This
+/// thread is one of them: else it would have to send all that is to be shared to the others, and sleep
+/// meanwhile.
 fn use_threads(threads: Option<u32>) -> Result<(), Failure> {
     let count = threads.unwrap_or(0) as usize;
     let pool = rayon::ThreadPoolBuilder::new()

@@ -17,8 +17,8 @@ const EDGE: f64 = 24.0;
 
 /// A picture (SVG text) of fields over position: one panel a field, particles as points before the reference.
 ///
-/// `x_label` bears its unit in brackets, such as `position [m]`. Values that are not finite are counted in the
-/// panel's remark.
+/// `x_label` bears its unit in brackets, such as `position [m]`. Values that are not finite are counted in
+/// the panel's remark.
 pub fn draw_fields(title: &str, x_label: &str, panels: &[FieldPanel]) -> String {
     let height = TOP + STRIDE * (panels.len().max(1) - 1) as f64 + PLOT_HEIGHT + BELOW;
     let mut canvas = Canvas::new(WIDTH, height, title);

@@ -14,7 +14,8 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Creates the folder where it is missing and checks, with a file that is removed again, that it is writable.
+    /// Creates the folder where it is missing and checks, with a file that is removed again, that it is
+    /// writable.
     pub fn create(path: &Path) -> Result<Folder, OutputError> {
         fs::create_dir_all(path).map_err(|source| OutputError::Create {
             path: path.into(),
@@ -43,12 +44,13 @@ impl Folder {
         self.write_with(name, |file| file.write_all(content.as_bytes()))
     }
 
-    /// Lets `fill` stream a file of this name, which replaces an older one when it is complete and on the disk; returns
-    /// where it is. `fill` writes to a buffer of its own, nothing needs to be held in memory.
+    /// Lets `fill` stream a file of this name, which replaces an older one when it is complete and on the
+    /// disk; returns where it is. `fill` writes to a buffer of its own, nothing needs to be held in memory.
     ///
     /// # Errors
-    /// [`OutputError::DiskFull`] if the space or the quota is exhausted, otherwise [`OutputError::Write`] with what
-    /// `fill` or the system reported. The older file is then as it was, and nothing of the new one is left.
+    /// [`OutputError::DiskFull`] if the space or the quota is exhausted, otherwise [`OutputError::Write`]
+    /// with what `fill` or the system reported. The older file is then as it was, and nothing of the new one
+    /// is left.
     pub fn write_with(
         &self,
         name: &str,

@@ -38,7 +38,8 @@ impl Frame {
         self.left + self.width
     }
 
-    /// Where a pair of values lies in the picture, possibly outside the rectangle; `None` if it cannot be drawn.
+    /// Where a pair of values lies in the picture, possibly outside the rectangle; `None` if it cannot be
+    /// drawn.
     pub fn place(&self, (x, y): (f64, f64)) -> Option<Point> {
         let (x, y) = (self.x.fraction(x)?, self.y.fraction(y)?);
         Some((self.left + x * self.width, self.bottom() - y * self.height))

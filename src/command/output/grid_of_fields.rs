@@ -15,11 +15,12 @@ const TOP: f64 = 114.0;
 const BELOW: f64 = 58.0;
 const EDGE: f64 = 24.0;
 
-/// A picture (SVG text) of one field of several methods: small panels in `columns` columns on common axes, each
-/// with its name and remark above.
+/// A picture (SVG text) of one field of several methods: small panels in `columns` columns on common axes,
+/// each with its name and remark above.
 ///
 /// The labels bear their units in brackets. So that one unstable method does not flatten the others, the axis
-/// reaches at most half a span of the reference beyond it; particles outside are drawn as arrowheads and counted.
+/// reaches at most half a span of the reference beyond it; particles outside are drawn as arrowheads and
+/// counted.
 pub fn draw_grid_of_fields(
     title: &str,
     x_label: &str,

@@ -30,8 +30,8 @@ pub struct Line {
     pub variant: usize,
     /// Where it goes, in drawing order; a point that cannot be drawn breaks it.
     pub points: Vec<(f64, f64)>,
-    /// What stands beside a cross at its last point, such as `5.2 s` where a run stopped; empty for neither. If the point lies
-    /// above or below the axis, the cross is at its edge.
+    /// What stands beside a cross at its last point, such as `5.2 s` where a run stopped; empty for neither.
+    /// If the point lies above or below the axis, the cross is at its edge.
     pub stopped: String,
 }
 

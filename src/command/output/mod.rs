@@ -2,9 +2,9 @@
 //!
 //! [`Folder`] is checked before anything is computed, and a file in it is complete or absent. Pictures are
 //! returned as text, drawn from a few primitives; a plotting crate would place them on whole pixels and bring
-//! neither dashes nor haloes. Colours are those of Okabe and Ito, and every distinction that a colour makes is
-//! made again by a marker, its filling or a dash, so that a grey print tells the same. Maps take viridis, which
-//! brightens evenly.
+//! neither dashes nor haloes. Colours are those of Okabe and Ito, and every distinction that a colour makes
+//! is made again by a marker, its filling or a dash, so that a grey print tells the same. Maps take viridis,
+//! which brightens evenly.
 
 mod error;
 mod fields;

@@ -10,7 +10,8 @@ pub struct PageError {
     pub name: String,
 }
 
-/// The page with `text` between the lines `<!-- begin NAME -->` and `<!-- end NAME -->`; the rest stays as it is.
+/// The page with `text` between the lines `<!-- begin NAME -->` and `<!-- end NAME -->`; the rest stays as it
+/// is.
 ///
 /// # Errors
 /// If either line is missing or comes more than once, or the end is above the beginning.

@@ -41,7 +41,8 @@ impl Series {
     /// Whenever the run ends, the index names complete files only.
     ///
     /// # Errors
-    /// Those of [`PointCloud::write_vtu`]. The index on the disk is then the one before, and the series in memory too.
+    /// Those of [`PointCloud::write_vtu`]. The index on the disk is then the one before, and the series in
+    /// memory too.
     pub fn add(&mut self, folder: &Folder, time: f64, cloud: &PointCloud) -> Result<PathBuf, OutputError> {
         let file = format!("{}-{:06}.vtu", self.name, self.frames.len());
         let path = cloud.write_vtu(folder, &file)?;

@@ -20,10 +20,11 @@ impl Medium for File {
     }
 }
 
-/// Fills a file of a temporary name in the same folder and renames it over `path` once its bytes are on the disk.
+/// Fills a file of a temporary name in the same folder and renames it over `path` once its bytes are on the
+/// disk.
 ///
-/// After a failure nothing of the new file is left and an older one of that name is untouched. A loss of power
-/// leaves the older file or the new one; a killed process may leave the hidden temporary file.
+/// After a failure nothing of the new file is left and an older one of that name is untouched. A loss of
+/// power leaves the older file or the new one; a killed process may leave the hidden temporary file.
 ///
 /// # Errors
 /// [`OutputError::DiskFull`] if the space or the quota is exhausted, otherwise [`OutputError::Write`].

@@ -41,10 +41,11 @@ pub struct CurvePoint {
     pub on_front: bool,
 }
 
-/// A picture (SVG text) of a study: error against cost, both axes logarithmic, one curve a method, the legend to
-/// the right; the best points are ringed, labelled and joined by a stair.
+/// A picture (SVG text) of a study: error against cost, both axes logarithmic, one curve a method, the legend
+/// to the right; the best points are ringed, labelled and joined by a stair.
 ///
-/// Without a best point it is a picture of curves and nothing more: no stair, and no word on which way is better.
+/// Without a best point it is a picture of curves and nothing more: no stair, and no word on which way is
+/// better.
 ///
 /// The labels bear their units in brackets. Points that are not positive and finite (a run that
 /// stopped may be not a number) are left out and counted.

@@ -52,8 +52,8 @@ pub(super) fn stroke(family: usize, variant: usize) -> Stroke {
     }
 }
 
-/// Marker of a method: shape by variant; colour and filling (full, hollow, dotted) by family, so that families
-/// differ in grey too.
+/// Marker of a method: shape by variant; colour and filling (full, hollow, dotted) by family, so that
+/// families differ in grey too.
 pub(super) fn marker(canvas: &mut Canvas, at: Point, family: usize, variant: usize) {
     let rim = Stroke::full(colour(family), 2.0);
     let fill = if family.is_multiple_of(3) {

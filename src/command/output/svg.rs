@@ -140,7 +140,8 @@ impl Canvas {
         self.add("</g>");
     }
 
-    /// Many small discs of one colour, as ends of lines without length: a third of the text that circles take.
+    /// Many small discs of one colour, as ends of lines without length: a third of the text that circles
+    /// take.
     pub fn dots(&mut self, centres: &[Point], radius: f64, colour: &str) {
         let path: String = centres.iter().map(|(x, y)| format!("M{x:.1} {y:.1}h0")).collect();
         let width = 2.0 * radius;

@@ -15,7 +15,8 @@ pub struct Table {
 }
 
 impl Table {
-    /// Writes the table with as many digits as give back the same bits when read; the file is complete or absent.
+    /// Writes the table with as many digits as give back the same bits when read; the file is complete or
+    /// absent.
     pub fn write_csv(&self, folder: &Folder, name: &str) -> Result<PathBuf, OutputError> {
         self.check(folder, name)?;
         let rows = self.columns.first().map_or(0, Vec::len);

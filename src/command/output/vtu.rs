@@ -1,9 +1,9 @@
 //! Particles of one moment as a VTK unstructured grid, which ParaView opens.
 //!
-//! Every particle is a point and a vertex cell. Numbers are little-endian `Float64` in base64, bit for bit, so that
-//! the file is well-formed XML; it is streamed, nothing is held twice. Our own writer, since the crate `vtkio`, which
-//! reads the files back in the tests, holds a file several times in memory, gives vectors the range of their
-//! components, and writes no particles in a way that VTK refuses.
+//! Every particle is a point and a vertex cell. Numbers are little-endian `Float64` in base64, bit for bit,
+//! so that the file is well-formed XML; it is streamed, nothing is held twice. Our own writer, since the
+//! crate `vtkio`, which reads the files back in the tests, holds a file several times in memory, gives
+//! vectors the range of their components, and writes no particles in a way that VTK refuses.
 
 use std::collections::HashSet;
 use std::io::{self, Write};
@@ -25,7 +25,8 @@ pub enum Components {
     Scalar,
     /// `x`, `y`, `z`.
     Vector,
-    /// `xx`, `yy`, `zz`, `xy`, `yz`, `xz`: not the order of the columns in tables, which end in `xy`, `xz`, `yz`.
+    /// `xx`, `yy`, `zz`, `xy`, `yz`, `xz`: not the order of the columns in tables, which end in `xy`, `xz`,
+    /// `yz`.
     Symmetric,
     /// `xx`, `xy`, `xz`, `yx`, ..., `zz`: row by row.
     Tensor,
@@ -73,8 +74,9 @@ impl PointCloud {
     /// Writes the particles as `name`, which should end in `.vtu`; the file is complete or as it was.
     ///
     /// # Errors
-    /// [`OutputError::Field`] if a field has not as many values as the particles need, [`OutputError::FieldName`] if it
-    /// has no name or that of another; otherwise those of [`Folder::write_with`].
+    /// [`OutputError::Field`] if a field has not as many values as the particles need,
+    /// [`OutputError::FieldName`] if it has no name or that of another; otherwise those of
+    /// [`Folder::write_with`].
     pub fn write_vtu(&self, folder: &Folder, name: &str) -> Result<PathBuf, OutputError> {
         self.check(folder, name)?;
         folder.write_with(name, |file| self.stream(file))

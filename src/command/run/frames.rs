@@ -80,7 +80,8 @@ impl<'a> Frames<'a> {
         &self.written
     }
 
-    /// What the user should know if frames of the earlier part are not there: the run was resumed into another folder.
+    /// What the user should know if frames of the earlier part are not there: the run was resumed into
+    /// another folder.
     pub(super) fn warning(&self) -> Option<String> {
         let missing = self.files.iter().filter(|file| !file.exists()).count();
         (missing > 0).then(|| {

@@ -32,7 +32,8 @@ pub(super) struct Filling<const D: usize> {
     pub(super) particles: Particles<f64, D>,
 }
 
-/// Fills the bodies, gives the particles their initial values and finds the surfaces; the run takes steps of `dt` (s).
+/// Fills the bodies, gives the particles their initial values and finds the surfaces; the run takes steps of
+/// `dt` (s).
 pub(super) fn initial<const D: usize>(
     scene: &Scene,
     grid: &Grid<f64, D>,

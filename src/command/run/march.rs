@@ -102,8 +102,8 @@ impl RunPlan<'_> {
     }
 }
 
-/// Steps `simulation` to the end, writing particles and checkpoints when the scene asks for it, and sampling the energy.
-/// Steps that are renewed change `schedule`.
+/// Steps `simulation` to the end, writing particles and checkpoints when the scene asks for it, and sampling
+/// the energy. Steps that are renewed change `schedule`.
 pub(super) fn march<const D: usize>(
     journey: &RunPlan<'_>,
     schedule: &mut Schedule,

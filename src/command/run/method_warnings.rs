@@ -1,9 +1,11 @@
-//! Combinations of method and model that cannot be relied on: each with the keys at fault and what to take instead.
+//! Combinations of method and model that cannot be relied on: each with the keys at fault and what to take
+//! instead.
 
 use crate::scene::{Basis, Body, Phases, ReconstructionKind, Scene};
 use materialpoint::grid::{Face, Side};
 
-/// What a user should know of the method of a scene: sentences that name the keys at fault; none where it can be relied on.
+/// What a user should know of the method of a scene: sentences that name the keys at fault; none where it can
+/// be relied on.
 pub fn method_warnings(scene: &Scene) -> Vec<String> {
     let all = [
         spline_on_a_moving_surface(scene),
@@ -91,7 +93,8 @@ fn is_at_another(scene: &Scene, body: &Body, face: Face) -> bool {
     })
 }
 
-/// Relaxed fits want two particles along each axis of a cell: cells with less are stepped as by particle sums.
+/// Relaxed fits want two particles along each axis of a cell: cells with less are stepped as by particle
+/// sums.
 fn few_particles(scene: &Scene) -> Option<String> {
     if scene.method.reconstruction != ReconstructionKind::RelaxedTaylor {
         return None;

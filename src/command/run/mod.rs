@@ -93,7 +93,8 @@ impl<const D: usize> Outcome<D> {
     }
 }
 
-/// Runs a `scene` of one dimension, writing particles to `folder` if there is one, and calls `progress` now and then.
+/// Runs a `scene` of one dimension, writing particles to `folder` if there is one, and calls `progress` now
+/// and then.
 ///
 /// # Errors
 /// See [`RunError`]. Files written before the error stay.
@@ -120,16 +121,18 @@ where
     run_from(scene, None, folder, progress)
 }
 
-/// Goes on with a run of `scene` where it was when the file `checkpoint` was written, and ends as the run would have that was
-/// never interrupted: with the same numbers to the bit, and the same files if `folder` is the same.
+/// Goes on with a run of `scene` where it was when the file `checkpoint` was written, and ends as the run
+/// would have that was never interrupted: with the same numbers to the bit, and the same files if `folder` is
+/// the same.
 ///
-/// The checkpoint must be of this scene; only title, output and, if the step is given as a number, the end may differ. A later
-/// end makes the run longer; the range of the energy then knows the earlier part by the samples that were taken there. A
-/// checkpoint of the last step leaves nothing to do but to write the files of the end. The speed in the summary is that of the
-/// steps taken now.
+/// The checkpoint must be of this scene; only title, output and, if the step is given as a number, the end
+/// may differ. A later end makes the run longer; the range of the energy then knows the earlier part by the
+/// samples that were taken there. A checkpoint of the last step leaves nothing to do but to write the files
+/// of the end. The speed in the summary is that of the steps taken now.
 ///
 /// # Errors
-/// See [`RunError`]; [`CheckpointError`] says why the file does not serve. Files written before the error stay.
+/// See [`RunError`]; [`CheckpointError`] says why the file does not serve. Files written before the error
+/// stay.
 pub fn resume_in<const D: usize>(
     scene: &Scene,
     checkpoint: &Path,
@@ -311,8 +314,8 @@ pub struct StableStep {
 }
 
 /// A step (s) that is stable in the scene's initial layout with the particles' own speeds, by
-/// [`Stepper::stiffness`](materialpoint::stepper::Stepper::stiffness): what an automatic step takes its share of. `None` if nothing
-/// resists a motion.
+/// [`Stepper::stiffness`](materialpoint::stepper::Stepper::stiffness): what an automatic step takes its share
+/// of. `None` if nothing resists a motion.
 ///
 /// # Errors
 /// If the scene cannot be set up.
@@ -331,8 +334,8 @@ where
     Ok(limit.map(|limit| StableStep { limit, proved }))
 }
 
-/// Largest stable time step (s) of the scene's initial layout, by power iteration on all particles; `None` if nothing resists
-/// a motion.
+/// Largest stable time step (s) of the scene's initial layout, by power iteration on all particles; `None` if
+/// nothing resists a motion.
 ///
 /// # Errors
 /// If the scene cannot be set up.

@@ -13,8 +13,8 @@ use materialpoint::particles::Particles;
 use materialpoint::phase::PoreLiquid;
 use materialpoint::reference::FieldReference;
 
-/// Reference values at the particles, in their order, the components of a vector or tensor together; empty where the scene names no reference, and those of the liquid in
-/// one phase.
+/// Reference values at the particles, in their order, the components of a vector or tensor together; empty
+/// where the scene names no reference, and those of the liquid in one phase.
 #[derive(Clone, Debug, Default)]
 pub struct Exact {
     /// Displacement (m) of the solid at the end.
@@ -91,7 +91,8 @@ impl Exact {
 pub struct ErrorNorms {
     /// Root mean square, in the field's unit.
     pub rms: f64,
-    /// Root of the sum of squares over that of the reference; not finite, and left out of JSON, where that is zero.
+    /// Root of the sum of squares over that of the reference; not finite, and left out of JSON, where that is
+    /// zero.
     #[serde(skip_serializing_if = "is_not_finite")]
     pub relative_l2: f64,
     /// Largest, in the field's unit.

@@ -1,11 +1,12 @@
 //! When the steps of a run begin and end.
 //!
-//! A fixed step is the same throughout; the last one is shorter where the end asks for it. An automatic step is a share
-//! (`time.safety`) of the largest stable one, and looked at again as the run goes: waves get faster where material stiffens,
-//! particles move, surfaces come to lie in other cells. Looked at is before the steps with numbers that are multiples of
-//! [`LOOK`] (speeds) and [`LAYOUT`] (where the particles are in the grid), so that the steps follow from the scene alone: not
-//! from the threads, the files that are written or where the run was interrupted. It changes only when it has become too
-//! large, or too small by a quarter, and is cut so that a whole number of equal steps leads to the end.
+//! A fixed step is the same throughout; the last one is shorter where the end asks for it. An automatic step
+//! is a share (`time.safety`) of the largest stable one, and looked at again as the run goes: waves get
+//! faster where material stiffens, particles move, surfaces come to lie in other cells. Looked at is before
+//! the steps with numbers that are multiples of [`LOOK`] (speeds) and [`LAYOUT`] (where the particles are in
+//! the grid), so that the steps follow from the scene alone: not from the threads, the files that are written
+//! or where the run was interrupted. It changes only when it has become too large, or too small by a quarter,
+//! and is cut so that a whole number of equal steps leads to the end.
 
 use super::error::RunError;
 use super::loads::forcing;
@@ -21,7 +22,8 @@ const LAYOUT: usize = 64;
 const SAMPLED: usize = 2048;
 /// A fixed step is looked at so many times less often: nothing follows from it but a warning.
 const SELDOM: usize = 4;
-/// An automatic step grows when it could by so much: each change costs a little accuracy, since velocities live half a step early.
+/// An automatic step grows when it could by so much: each change costs a little accuracy, since velocities
+/// live half a step early.
 const GROWTH: f64 = 1.25;
 /// Most steps of a run: years of computing.
 const MOST_STEPS: f64 = 1e12;
@@ -51,7 +53,8 @@ pub struct Schedule {
     pub(super) stiffness: f64,
     /// Largest stable step, as it was last found; infinite where there is none.
     pub(super) limit: CriticalStep<f64>,
-    /// Time (s) at which a fixed step was found to be too large, and the largest stable one then; infinite if it never was.
+    /// Time (s) at which a fixed step was found to be too large, and the largest stable one then; infinite if
+    /// it never was.
     pub(super) exceeded: (f64, CriticalStep<f64>),
 }
 
@@ -227,9 +230,10 @@ impl Schedule {
         }
     }
 
-    /// Time (s) over which the velocities are kicked in step `step` (from 0), not before the last change: from the
-    /// middle of the step before to that of this one. The first kick is half a step if the velocities start at time zero
-    /// (`half_kick`), and otherwise a whole one, as the papers have it; theirs is a shorter last step too.
+    /// Time (s) over which the velocities are kicked in step `step` (from 0), not before the last change:
+    /// from the middle of the step before to that of this one. The first kick is half a step if the
+    /// velocities start at time zero (`half_kick`), and otherwise a whole one, as the papers have it; theirs
+    /// is a shorter last step too.
     pub(super) fn kick(&self, step: usize, half_kick: bool) -> f64 {
         let changes = step > 0 && step == self.since.0;
         match (half_kick, step.checked_sub(1)) {
@@ -260,7 +264,8 @@ impl Schedule {
     }
 }
 
-/// Steps of `dt` that lead over `rest`, at least one. A rest that is a whole number of steps but for round-off takes exactly that many.
+/// Steps of `dt` that lead over `rest`, at least one. A rest that is a whole number of steps but for
+/// round-off takes exactly that many.
 fn steps_to(rest: f64, dt: f64) -> f64 {
     let whole = (rest / dt).round();
     let steps = if (rest / dt - whole).abs() <= 1e-9 * whole {

@@ -1,4 +1,5 @@
-//! What a body starts with: expressions of the scene, or the state of a reference; at the particles or interpolated.
+//! What a body starts with: expressions of the scene, or the state of a reference; at the particles or
+//! interpolated.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -69,8 +70,8 @@ impl From<TwoPhaseState> for Values<1> {
     }
 }
 
-/// Gives particle `p` its values. A displacement that it starts with is only remembered: it stays at its material point, as
-/// small strain has it.
+/// Gives particle `p` its values. A displacement that it starts with is only remembered: it stays at its
+/// material point, as small strain has it.
 pub(super) fn set<const D: usize>(particles: &mut Particles<f64, D>, p: usize, values: &Values<D>) {
     particles.displacement[p] = values.displacement;
     particles.velocity[p] = values.velocity;

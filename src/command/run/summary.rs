@@ -102,7 +102,8 @@ pub struct EnergySummary {
     /// Work of walls that rub on the bodies (J), absent where none does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wall_work: Option<f64>,
-    /// Most work (J) that they did in one step beside that of their own motion; zero unless something is wrong.
+    /// Most work (J) that they did in one step beside that of their own motion; zero unless something is
+    /// wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wall_gain: Option<f64>,
 }

@@ -10,9 +10,10 @@ use crate::scene::{Body, Boundary, BoundaryKind, FORGIVEN, ReconstructionKind, S
 use materialpoint::grid::{Face, Side};
 use materialpoint::stepper::SurfacePoint;
 
-/// The surfaces of `body`, whose particles are those of `filling` and are numbered from `first` on: those that bear a traction, where
-/// its boundary says so, and those that the method must know whatever acts on them ([`must_be_known`]), that is, all but the held and,
-/// in two phases, sealed ones. Beyond one dimension each row of the lattice has a point wherever it ends, also at a hole.
+/// The surfaces of `body`, whose particles are those of `filling` and are numbered from `first` on: those
+/// that bear a traction, where its boundary says so, and those that the method must know whatever acts on
+/// them ([`must_be_known`]), that is, all but the held and, in two phases, sealed ones. Beyond one dimension
+/// each row of the lattice has a point wherever it ends, also at a hole.
 pub(super) fn surfaces<const D: usize>(
     scene: &Scene,
     body: &Body,
@@ -56,8 +57,8 @@ pub(super) fn acts_at<const D: usize>(
     }
 }
 
-/// Whether the method must know where bodies end also where no traction acts: the liquid meets a surface in any case, and along one
-/// axis fits end there. Beyond, fits find out from the particles.
+/// Whether the method must know where bodies end also where no traction acts: the liquid meets a surface in
+/// any case, and along one axis fits end there. Beyond, fits find out from the particles.
 fn must_be_known<const D: usize>(scene: &Scene) -> bool {
     let fits_end = D == 1 && scene.method.reconstruction != ReconstructionKind::Shepard;
     scene.material.phases.count() > 1 || fits_end
@@ -293,7 +294,8 @@ mod tests {
             .iter()
             .map(|p| (p.particle, p.loaded))
             .collect();
-        // Both ends of both bodies; nothing is said of where a traction acts on those that look the other way.
+        // Both ends of both bodies; nothing is said of where a traction acts on those that look the other
+        // way.
         assert_eq!(found, [(0, true), (3, false), (4, true), (7, true)]);
     }
 

@@ -63,8 +63,8 @@ pub struct Scene {
 impl Scene {
     /// Reads a scene from TOML text.
     ///
-    /// Each override is `KEY=VALUE`: a dotted key (`time.end`, `body.0.jitter`) and a TOML value. A plain word
-    /// need not be quoted (`method.basis=linear`).
+    /// Each override is `KEY=VALUE`: a dotted key (`time.end`, `body.0.jitter`) and a TOML value. A plain
+    /// word need not be quoted (`method.basis=linear`).
     ///
     /// # Errors
     /// If the text is not TOML or the scene is not one that can be run; the message names the key, its value
@@ -117,8 +117,9 @@ impl Scene {
         scene
     }
 
-    /// The same scene with this many cells along the first axis, at least 1, and as many along the others as keep the shape of
-    /// the cells. The rest of the scene, the number of particles per cell among it, stays; it is not checked again.
+    /// The same scene with this many cells along the first axis, at least 1, and as many along the others as
+    /// keep the shape of the cells. The rest of the scene, the number of particles per cell among it, stays;
+    /// it is not checked again.
     #[must_use]
     pub fn with_cells(mut self, cells: usize) -> Self {
         let cells = cells.max(1);
@@ -130,8 +131,8 @@ impl Scene {
         self
     }
 
-    /// Fraction of the largest stable step, or for plain MPM of a lower bound of it, that an automatic step takes:
-    /// as told, or that of the method ([`Method::default_safety`]).
+    /// Fraction of the largest stable step, or for plain MPM of a lower bound of it, that an automatic step
+    /// takes: as told, or that of the method ([`Method::default_safety`]).
     pub fn safety(&self) -> f64 {
         match self.time.step {
             StepSize::Auto { safety: Some(safety) } => safety,

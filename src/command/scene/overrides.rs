@@ -5,8 +5,8 @@ use toml::{Table, Value};
 use super::SceneError;
 use super::text::{quote, shorten, type_name};
 
-/// Sets every `KEY=VALUE` in the order given. The key is dotted, a number counts the entries of a list from 0;
-/// tables that do not exist yet are made, and whether the key makes sense is checked with the whole scene.
+/// Sets every `KEY=VALUE` in the order given. The key is dotted, a number counts the entries of a list from
+/// 0; tables that do not exist yet are made, and whether the key makes sense is checked with the whole scene.
 pub(super) fn apply(mut scene: Table, overrides: &[String]) -> Result<Table, SceneError> {
     for text in overrides {
         scene = set(scene, text).map_err(|reason| SceneError::Override {

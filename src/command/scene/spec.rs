@@ -22,9 +22,11 @@ pub struct GridSpec {
 pub enum StepSize {
     /// Always the same (s).
     Fixed(f64),
-    /// A fraction of the largest stable step, or for plain MPM of a lower bound of it, renewed as the run goes.
+    /// A fraction of the largest stable step, or for plain MPM of a lower bound of it, renewed as the run
+    /// goes.
     Auto {
-        /// The fraction, above 0 and at most 1; that of the method unless told ([`Scene::safety`](super::Scene::safety)).
+        /// The fraction, above 0 and at most 1; that of the method unless told
+        /// ([`Scene::safety`](super::Scene::safety)).
         safety: Option<f64>,
     },
 }
@@ -59,10 +61,11 @@ pub struct Method {
     pub basis: Basis,
     /// From particle data to integrals.
     pub reconstruction: ReconstructionKind,
-    /// Sub-points of each particle's domain, 1 to 128; more than one with dual domain and Shepard along one axis
-    /// only.
+    /// Sub-points of each particle's domain, 1 to 128; more than one with dual domain and Shepard along one
+    /// axis only.
     pub subpoints: u8,
-    /// Whether cells whose particles do not determine their fit borrow virtual points; Taylor in one dimension only.
+    /// Whether cells whose particles do not determine their fit borrow virtual points; Taylor in one
+    /// dimension only.
     pub virtual_points: bool,
     /// Mass behind the DOFs' velocities; lumped for Shepard, constrained for relaxed Taylor.
     pub velocity_mass: VelocityMass,
@@ -71,9 +74,9 @@ pub struct Method {
 }
 
 impl Method {
-    /// Fraction of the largest stable step that keeps the energy of bodies whose particles cross cells within some per cent
-    /// (`docs/verification/stability.md`). Crossing hat functions gives every particle a small kick of no
-    /// sign, the gradient's jump for a part of a step, that shrinks with the step alone.
+    /// Fraction of the largest stable step that keeps the energy of bodies whose particles cross cells within
+    /// some per cent (`docs/verification/stability.md`). Crossing hat functions gives every particle a small
+    /// kick of no sign, the gradient's jump for a part of a step, that shrinks with the step alone.
     pub fn default_safety(&self) -> f64 {
         let hats = matches!(self.basis, Basis::Linear | Basis::BSpline { degree: 1 });
         match self.reconstruction {
@@ -98,8 +101,8 @@ impl Method {
         }
     }
 
-    /// The velocity mass of a scene that does not name one: lumped for Shepard and constrained for relaxed Taylor, which
-    /// have no other, and consistent for the rest.
+    /// The velocity mass of a scene that does not name one: lumped for Shepard and constrained for relaxed
+    /// Taylor, which have no other, and consistent for the rest.
     pub fn default_velocity_mass(reconstruction: ReconstructionKind) -> VelocityMass {
         match reconstruction {
             ReconstructionKind::Shepard => VelocityMass::Lumped,
@@ -119,7 +122,8 @@ pub enum Law {
         /// Poisson's ratio, 0 in one dimension, which feels the modulus of uniaxial strain alone.
         poissons_ratio: f64,
     },
-    /// `linear-elastic` with `strain = "large"`: Hill's rate, in one dimension `(E - stress)` times strain rate.
+    /// `linear-elastic` with `strain = "large"`: Hill's rate, in one dimension `(E - stress)` times strain
+    /// rate.
     Hill {
         /// Young's modulus (Pa), positive.
         youngs_modulus: f64,
@@ -269,7 +273,8 @@ pub struct Material {
 }
 
 impl Material {
-    /// Density (kg/m3) of the particles' own mass at the start: of the solid with its pores, without a liquid in them.
+    /// Density (kg/m3) of the particles' own mass at the start: of the solid with its pores, without a liquid
+    /// in them.
     pub fn solid_density(&self) -> f64 {
         match self.phases {
             Phases::One { density } => density,
@@ -304,12 +309,14 @@ pub struct Body {
     pub max: Vec<f64>,
     /// Particles per cell along each axis, positive.
     pub particles_per_cell: Vec<usize>,
-    /// Velocity at the start (m/s), in `x`, `y`, `z`; one expression per axis. Without it the body is at rest.
+    /// Velocity at the start (m/s), in `x`, `y`, `z`; one expression per axis. Without it the body is at
+    /// rest.
     pub velocity: Option<Vec<Expression>>,
-    /// Where the body is, within its box: particles at which this is positive are kept, in `x`, `y`, `z`. Without it all are.
+    /// Where the body is, within its box: particles at which this is positive are kept, in `x`, `y`, `z`.
+    /// Without it all are.
     pub inside: Option<Expression>,
-    /// Stress at the start (Pa), tension positive, in `x`, `y`, `z`; with two phases the effective one. Without it the body
-    /// is free of stress.
+    /// Stress at the start (Pa), tension positive, in `x`, `y`, `z`; with two phases the effective one.
+    /// Without it the body is free of stress.
     pub stress: Option<StressSpec>,
     /// Velocity of the liquid at the start (m/s), as `velocity`. Without it the liquid moves with the solid.
     pub liquid_velocity: Option<Vec<Expression>>,
@@ -387,8 +394,8 @@ pub struct Boundary {
     pub face: Face,
     /// What holds.
     pub kind: BoundaryKind,
-    /// Where a traction acts: on particles of the surface at which this is positive at the start, in `x`, `y`,
-    /// `z`. Without it on all.
+    /// Where a traction acts: on particles of the surface at which this is positive at the start, in `x`,
+    /// `y`, `z`. Without it on all.
     pub inside: Option<Expression>,
     /// What the liquid meets.
     pub pores: PoreBoundary,
@@ -441,21 +448,22 @@ pub enum ReferenceSpec {
         /// Column at rest or in motion.
         against: Against,
     },
-    /// `consolidation`, two phases: a layer on a fixed base under a load at its drained top; exact at small strain, converged
-    /// at large strain. Its state at `start` is also the initial state of the body.
+    /// `consolidation`, two phases: a layer on a fixed base under a load at its drained top; exact at small
+    /// strain, converged at large strain. Its state at `start` is also the initial state of the body.
     Consolidation {
         /// Load on the top (Pa), not 0, negative in compression.
         load: f64,
         /// Time (s) of the solution at which the run starts; 0 at large strain.
         start: f64,
     },
-    /// `xie-leo`, two phases: the same at large strain without inertia, for the logarithmic law and permeability exponent 2.
+    /// `xie-leo`, two phases: the same at large strain without inertia, for the logarithmic law and
+    /// permeability exponent 2.
     XieLeo {
         /// Load on the top (Pa), not 0, negative in compression.
         load: f64,
     },
-    /// `standing-wave`, two phases: both ends fixed, started with the fast damped wave, whose state at time 0 is also the
-    /// initial state of the body.
+    /// `standing-wave`, two phases: both ends fixed, started with the fast damped wave, whose state at time 0
+    /// is also the initial state of the body.
     StandingWave {
         /// Largest velocity of the solid at the start (m/s), not 0.
         velocity: f64,
@@ -464,14 +472,15 @@ pub enum ReferenceSpec {
     },
     /// `self-weight`, two phases: a column on a fixed base, at rest under its weight.
     SelfWeight,
-    /// `manufactured`, two and three dimensions: a neo-Hookean box on rollers, driven by the body force that makes waves of this
-    /// amplitude exact. The initial state of the body is the reference's.
+    /// `manufactured`, two and three dimensions: a neo-Hookean box on rollers, driven by the body force that
+    /// makes waves of this amplitude exact. The initial state of the body is the reference's.
     Manufactured {
         /// Largest displacement (m), not 0.
         amplitude: f64,
     },
-    /// `vortex`, two and three dimensions: a neo-Hookean ring about the middle of the grid, whose circles turn and come back, driven
-    /// by a body force; the body may be larger than the ring. The initial state of the body is the reference's.
+    /// `vortex`, two and three dimensions: a neo-Hookean ring about the middle of the grid, whose circles
+    /// turn and come back, driven by a body force; the body may be larger than the ring. The initial state of
+    /// the body is the reference's.
     Vortex {
         /// Inner radius (m), positive.
         inner: f64,

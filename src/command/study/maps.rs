@@ -9,10 +9,10 @@ use crate::output::{Folder, MapPanel, OutputError, draw_maps};
 use crate::run::{Invariants, Outcome};
 use crate::scene::Scene;
 
-/// Writes `fields.svg`: particles where they are at the end, coloured by the sizes of displacement and velocity, by the mean stress
-/// and by von Mises' stress, both with the stress off the plane; with two phases by the pore pressure instead
-/// of the velocity, and the stress is the effective one. Stresses are left out where the law does not know
-/// the one off the plane.
+/// Writes `fields.svg`: particles where they are at the end, coloured by the sizes of displacement and
+/// velocity, by the mean stress and by von Mises' stress, both with the stress off the plane; with two phases
+/// by the pore pressure instead of the velocity, and the stress is the effective one. Stresses are left out
+/// where the law does not know the one off the plane.
 ///
 /// Particles in space are seen along `y` from its lower end: `x` to the right, `z` up, and what lies behind
 /// others is hidden.

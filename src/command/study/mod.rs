@@ -29,8 +29,8 @@ pub struct Plan {
     pub cells: Vec<usize>,
     /// How often each run is timed at least; the median counts.
     pub repeat: usize,
-    /// A run is timed until its median time, as often as it was timed, makes up this (s), or 200 times: the shortest
-    /// ones would be noise otherwise.
+    /// A run is timed until its median time, as often as it was timed, makes up this (s), or 200 times: the
+    /// shortest ones would be noise otherwise.
     pub least_seconds: f64,
 }
 
@@ -53,7 +53,8 @@ pub struct Row {
     pub steps: usize,
     /// Errors by field.
     pub errors: BTreeMap<&'static str, ErrorNorms>,
-    /// Observed order by field (of the RMS error), against the next coarser row of the method; absent in its first.
+    /// Observed order by field (of the RMS error), against the next coarser row of the method; absent in its
+    /// first.
     pub orders: BTreeMap<&'static str, f64>,
     /// Median time of the step loop (s).
     pub wall_seconds: f64,
@@ -162,12 +163,12 @@ pub enum StudyError {
     Output(#[from] OutputError),
 }
 
-/// Runs the plan; `progress` is called with the number of runs done, their total and what comes next: before each run, and
-/// before each pass in which runs are timed again.
+/// Runs the plan; `progress` is called with the number of runs done, their total and what comes next: before
+/// each run, and before each pass in which runs are timed again.
 ///
 /// # Errors
-/// If the scene names no reference, the plan is empty, or a run cannot start. A run that becomes unstable is a row
-/// with `stopped` set.
+/// If the scene names no reference, the plan is empty, or a run cannot start. A run that becomes unstable is
+/// a row with `stopped` set.
 pub fn study(
     scene: &Scene,
     plan: &Plan,

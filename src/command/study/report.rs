@@ -133,7 +133,8 @@ fn over_position(run: &Outcome, values: &[f64]) -> Vec<(f64, f64)> {
 /// Beyond this many points only the lowest and the highest of each group of neighbours are drawn.
 const MOST_POINTS: usize = 20_000;
 
-/// Of many points the extremes of neighbours, so that no outlier is lost; a value that is no number counts as one.
+/// Of many points the extremes of neighbours, so that no outlier is lost; a value that is no number counts as
+/// one.
 fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     if points.len() <= MOST_POINTS {
         return points;
@@ -312,8 +313,8 @@ fn spoken_time(seconds: f64) -> String {
     }
 }
 
-/// The front as a table in Markdown, ascending in time, with the errors of every field, and a recommendation for each of
-/// `limits` (0.01 is 1 %).
+/// The front as a table in Markdown, ascending in time, with the errors of every field, and a recommendation
+/// for each of `limits` (0.01 is 1 %).
 pub fn front_in_markdown(study: &Study, limits: &[f64]) -> String {
     let words = Words::of(study);
     let fields = words.fields.iter().map(|field| spoken(field));

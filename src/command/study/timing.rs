@@ -1,7 +1,7 @@
 //! Times of the runs of a study.
 //!
-//! The runs take turns: a pass times every run that still needs it once. A machine that is busy for a while then slows
-//! all methods, not the one whose turn it was.
+//! The runs take turns: a pass times every run that still needs it once. A machine that is busy for a while
+//! then slows all methods, not the one whose turn it was.
 
 use super::{Plan, StudyError};
 use crate::run::step_loop_seconds;

@@ -25,9 +25,9 @@ pub struct Strength<T> {
 /// With `s` the sine of the friction angle (de Souza Neto, Perić & Owen 2008, section 6.4.4):
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConeMatch {
-    /// The strength of plane strain at collapse. For associated flow `eta = 3 s / sqrt(9 + 3 s^2)` (Drucker & Prager 1952); otherwise
-    /// the cone depends on the dilation too, which decides the stress along the axis that is not strained. The dilation
-    /// angle is that of plane strain, `sin(psi) = tr(d) / |d_1 - d_2|`.
+    /// The strength of plane strain at collapse. For associated flow `eta = 3 s / sqrt(9 + 3 s^2)` (Drucker &
+    /// Prager 1952); otherwise the cone depends on the dilation too, which decides the stress along the axis
+    /// that is not strained. The dilation angle is that of plane strain, `sin(psi) = tr(d) / |d_1 - d_2|`.
     PlaneStrain,
     /// The outer edges, triaxial compression: circumscribed, `eta = 6 s / (sqrt(3) (3 - s))`.
     TriaxialCompression,
@@ -75,7 +75,8 @@ fn constants<T: Scalar>(strength: &Strength<T>, matching: ConeMatch) -> [T; 3] {
         ConeMatch::TriaxialCompression => [edge(-sine), edge(-dilation)],
         ConeMatch::TriaxialExtension => [edge(sine), edge(dilation)],
         ConeMatch::PlaneStrain => {
-            // No flow along the third axis: s_3 = -2/3 eta_bar sqrt(J2), which leaves k sqrt(J2) for the radius of Mohr's circle.
+            // No flow along the third axis: s_3 = -2/3 eta_bar sqrt(J2), which leaves k sqrt(J2) for the
+            // radius of Mohr's circle.
             let k = (three / (three + dilation * dilation)).sqrt();
             [three / (k * (three + sine * dilation)), k]
         }

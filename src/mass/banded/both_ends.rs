@@ -1,8 +1,8 @@
 //! Factors of matrices with few bands, eliminated from both ends at once.
 //!
-//! Elimination is a chain: each row waits for the inverse pivot of the one before. From both ends there are two chains, which a
-//! processor follows side by side, or two threads; they meet in the middle (twisted factorisation; Babuska 1972). The result is the same
-//! either way.
+//! Elimination is a chain: each row waits for the inverse pivot of the one before. From both ends there are
+//! two chains, which a processor follows side by side, or two threads; they meet in the middle (twisted
+//! factorisation; Babuska 1972). The result is the same either way.
 
 use nalgebra::SVector;
 
@@ -13,7 +13,8 @@ use crate::scalar::Scalar;
 /// Fewest rows of a chain that another thread is worth being woken for.
 const MANY: usize = 4096;
 
-/// Those above, between and below: the first are eliminated downwards, the last upwards, and those between, `least` or one more, after both.
+/// Those above, between and below: the first are eliminated downwards, the last upwards, and those between,
+/// `least` or one more, after both.
 #[inline(always)]
 fn split<X>(items: &[X], least: usize) -> [&[X]; 3] {
     let half = items.len().saturating_sub(least) / 2;
@@ -109,7 +110,8 @@ impl<T: Scalar, const W: usize> Upwards<T, W> {
 struct Taken<T, const W: usize>([T; W]);
 
 impl<T: Scalar, const W: usize> Taken<T, W> {
-    /// Takes from the next number what is to be taken, and notes what `row` has that number take from those after it.
+    /// Takes from the next number what is to be taken, and notes what `row` has that number take from those
+    /// after it.
     #[inline(always)]
     fn pass(&mut self, row: &[T; W], number: T) -> T {
         let value = number - self.0[0];
@@ -266,7 +268,8 @@ struct Chain<S, I, F> {
 }
 
 impl<S, I: Iterator, F: Fn(&mut S, I::Item)> Chain<S, I, F> {
-    /// The state after all steps. The state is a variable of this function's own, which a compiler keeps in registers.
+    /// The state after all steps. The state is a variable of this function's own, which a compiler keeps in
+    /// registers.
     #[inline(always)]
     fn last(self) -> S {
         let mut state = self.state;
@@ -277,7 +280,8 @@ impl<S, I: Iterator, F: Fn(&mut S, I::Item)> Chain<S, I, F> {
     }
 }
 
-/// The states after all steps of two chains of the same length, which are followed side by side or by a thread each.
+/// The states after all steps of two chains of the same length, which are followed side by side or by a
+/// thread each.
 #[inline(always)]
 fn follow<S, I, F, R, J, G>(parallel: bool, first: Chain<S, I, F>, second: Chain<R, J, G>) -> (S, R)
 where

@@ -1,4 +1,5 @@
-//! Cells that are not fitted four at a time: those that end within themselves, and those whose particles are hard to tell apart.
+//! Cells that are not fitted four at a time: those that end within themselves, and those whose particles are
+//! hard to tell apart.
 
 use crate::field::Field;
 use crate::grid::Side;
@@ -18,8 +19,9 @@ pub(super) enum Kind {
     Batch,
     /// Alone, because a surface cuts it or its particles leave it in doubt what they tell.
     Fallback,
-    /// Not at all: material ends within it on any slant, beyond one dimension, or two bodies end within it along one axis, or there is
-    /// no fit to speak of ([`Filling::Isolated`]). Its particles are the points of its force, and are left as they are.
+    /// Not at all: material ends within it on any slant, beyond one dimension, or two bodies end within it
+    /// along one axis, or there is no fit to speak of ([`Filling::Isolated`]). Its particles are the points
+    /// of its force, and are left as they are.
     Open,
 }
 
@@ -48,7 +50,8 @@ impl RelaxedCell {
         (self.kind, self.filling) = (Kind::Open, Filling::Isolated);
     }
 
-    /// The cell with number `cell`, whose own fit is full or in doubt, and which has no neighbours on its `open` sides.
+    /// The cell with number `cell`, whose own fit is full or in doubt, and which has no neighbours on its
+    /// `open` sides.
     #[inline(always)]
     pub(super) fn new<T: Scalar, const D: usize, const NB: usize>(
         cloud: &Cloud<'_, T, D>,
@@ -110,15 +113,16 @@ impl RelaxedCell {
     }
 }
 
-/// Whether one body ends in a cell of the only axis below where another begins: no one box holds what there is.
+/// Whether one body ends in a cell of the only axis below where another begins: no one box holds what there
+/// is.
 fn two_bodies_end<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: usize) -> bool {
     let here = || cloud.cuts.iter().filter(|cut| cut.cell as usize == cell);
     let ends = |side: Side| here().filter(move |cut| cut.side == side);
     ends(Side::Max).any(|end| ends(Side::Min).any(|start| start.position >= end.position))
 }
 
-/// What surfaces, or the ends of the particles on `open` sides, leave of the cell with number `cell`. Beyond one dimension a cell
-/// that borders on nothing stays whole.
+/// What surfaces, or the ends of the particles on `open` sides, leave of the cell with number `cell`. Beyond
+/// one dimension a cell that borders on nothing stays whole.
 pub(super) fn ended_patch<T: Scalar, const D: usize>(
     cloud: &Cloud<'_, T, D>,
     cell: usize,
@@ -151,8 +155,8 @@ pub(super) fn own_fit<T: Scalar, const D: usize, const NB: usize>(
     CellFit::weighted(points, 0, tolerance)
 }
 
-/// Coefficients of the fit through the particles of the cell at `place` and of its neighbours, in the frame of the whole cell;
-/// none where they do not tell all functions apart.
+/// Coefficients of the fit through the particles of the cell at `place` and of its neighbours, in the frame
+/// of the whole cell; none where they do not tell all functions apart.
 pub(super) fn wide_coefficients<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
     cloud: &Cloud<'_, T, D>,
     place: usize,

@@ -1,21 +1,24 @@
 //! Whether the particles of a cell tell the functions of a basis apart.
 //!
-//! Masses come straight from the particles: a function that is zero at all of them has none, and what is divided by it is made of
-//! nothing. Neighbours share functions, so that not all need be told apart in each cell; what each must tell apart is measured here.
+//! Masses come straight from the particles: a function that is zero at all of them has none, and what is
+//! divided by it is made of nothing. Neighbours share functions, so that not all need be told apart in each
+//! cell; what each must tell apart is measured here.
 
 use nalgebra::SVector;
 
 use crate::reconstruction::{Cloud, Filling, Patch};
 use crate::scalar::Scalar;
 
-/// Share of a function's mean square over the cell that must be left of it on the particles, after the functions before it.
+/// Share of a function's mean square over the cell that must be left of it on the particles, after the
+/// functions before it.
 const SEEN: f64 = 0.02;
 /// Functions in three dimensions: eight multilinear ones and three squares.
 const MOST: usize = 11;
 
-/// [`Filling::Underdetermined`] where the particles do not tell the multilinear functions apart, two along each axis, which every basis wants;
-/// [`Filling::PartlyFilled`] where they do not see squares beyond one axis, which a basis of higher degree wants there: rows of two
-/// particles along each axis determine its masses, but so weakly that noise grows. Along one axis they bear it.
+/// [`Filling::Underdetermined`] where the particles do not tell the multilinear functions apart, two along
+/// each axis, which every basis wants; [`Filling::PartlyFilled`] where they do not see squares beyond one
+/// axis, which a basis of higher degree wants there: rows of two particles along each axis determine its
+/// masses, but so weakly that noise grows. Along one axis they bear it.
 pub(super) fn seen_by_particles<T: Scalar, const D: usize>(
     cloud: &Cloud<'_, T, D>,
     cell: usize,
@@ -46,7 +49,8 @@ pub(super) fn seen_by_particles<T: Scalar, const D: usize>(
     }
 }
 
-/// Products of Legendre's first two functions along the axes, and the third of each, all of mean square one over a cell.
+/// Products of Legendre's first two functions along the axes, and the third of each, all of mean square one
+/// over a cell.
 fn functions_at<T: Scalar, const D: usize>(s: &SVector<T, D>) -> [T; MOST] {
     let [one, three, five] = [1.0, 3.0, 5.0].map(T::lit);
     let multilinear = 1_usize << D;
@@ -60,7 +64,8 @@ fn functions_at<T: Scalar, const D: usize>(s: &SVector<T, D>) -> [T; MOST] {
     })
 }
 
-/// How many of the first pivots of a symmetric matrix, of which there is the lower half, are at least so large.
+/// How many of the first pivots of a symmetric matrix, of which there is the lower half, are at least so
+/// large.
 fn large_pivots<T: Scalar>(matrix: &mut [[T; MOST]; MOST], order: usize, least: T) -> usize {
     for k in 0..order {
         let pivot = matrix[k][k];

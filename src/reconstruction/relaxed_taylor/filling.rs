@@ -3,13 +3,13 @@
 use crate::reconstruction::{Cloud, Patch};
 use crate::scalar::Scalar;
 
-/// Share from which on a cell counts as full: of the way from its middle to the end of the only axis, where the outermost particle
-/// decides and need not reach it to the last digit; of its volume where it borders on an empty cell, because a side on a slant
-/// leaves corners empty that the outermost particle does not see.
+/// Share from which on a cell counts as full: of the way from its middle to the end of the only axis, where
+/// the outermost particle decides and need not reach it to the last digit; of its volume where it borders on
+/// an empty cell, because a side on a slant leaves corners empty that the outermost particle does not see.
 const FULL: f64 = 0.9;
 
-/// Gap between material and a wall, in cells, that does not count beyond one axis: as much as two rows of particles a cell leave in
-/// doubt.
+/// Gap between material and a wall, in cells, that does not count beyond one axis: as much as two rows of
+/// particles a cell leave in doubt.
 const GAP: f64 = 0.1;
 
 /// Along each axis, below and above, whether no particles are beyond.
@@ -35,8 +35,8 @@ pub(super) fn is_full<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: 
     filled >= cloud.grid.cell_volume() * T::lit(FULL)
 }
 
-/// How far material reaches from the middle of a cell towards both of its sides along an axis, 1 at the side. It ends at the sides
-/// that are `open`, and there only where the cell is clearly not full.
+/// How far material reaches from the middle of a cell towards both of its sides along an axis, 1 at the side.
+/// It ends at the sides that are `open`, and there only where the cell is clearly not full.
 pub(super) fn reaches<T: Scalar, const D: usize>(
     cloud: &Cloud<'_, T, D>,
     cell: &Patch<T, D>,
@@ -56,7 +56,8 @@ pub(super) fn reaches<T: Scalar, const D: usize>(
     })
 }
 
-/// How far particles reach from the middle of a cell of the only axis towards a side, the outermost one and half its size.
+/// How far particles reach from the middle of a cell of the only axis towards a side, the outermost one and
+/// half its size.
 fn outermost<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: &Patch<T, D>, above: bool) -> T {
     let sign = if above { T::one() } else { -T::one() };
     let ends = particles(cloud, cell)
@@ -66,15 +67,16 @@ fn outermost<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: &Patch<T,
 
 /// Gaps between the material and the `open` sides of a cell along an axis, in cells.
 ///
-/// Particles have a volume and no shape: how long one is along an axis depends on how many lie side by side, on the shape of the cell
-/// and on how the body was pressed. So the gaps follow from moments of the volumes, which know nothing of shapes. With `u` the way from
-/// the side, 0 to 1 in the cell, and an even filling from the gap `g` on,
+/// Particles have a volume and no shape: how long one is along an axis depends on how many lie side by side,
+/// on the shape of the cell and on how the body was pressed. So the gaps follow from moments of the volumes,
+/// which know nothing of shapes. With `u` the way from the side, 0 to 1 in the cell, and an even filling from
+/// the gap `g` on,
 ///
 /// `sum_p V_p (1 - u) / V = (1 - g)^2 / 2`,  `sum_p V_p u (1 - u) / sum_p V_p (1 - u) = (1 + 2 g) / 3`.
 ///
-/// Weights that vanish at the far side feel no particle that crosses it. The first is exact for whole rows, and feels particles that
-/// cross the other sides; the second does not feel those, and is off by a quarter of the square of the distance between rows. The
-/// smaller one counts.
+/// Weights that vanish at the far side feel no particle that crosses it. The first is exact for whole rows,
+/// and feels particles that cross the other sides; the second does not feel those, and is off by a quarter of
+/// the square of the distance between rows. The smaller one counts.
 fn gaps<T: Scalar, const D: usize>(
     cloud: &Cloud<'_, T, D>,
     cell: &Patch<T, D>,
@@ -186,8 +188,8 @@ mod tests {
     use crate::particles::Bins;
     use nalgebra::{SVector, vector};
 
-    /// How far the cells at the wall `x = 0` of a grid of 3 x 6 are filled towards it, of material from `gap` on with so many columns and
-    /// rows of particles over the grid; `cells` are as large as that.
+    /// How far the cells at the wall `x = 0` of a grid of 3 x 6 are filled towards it, of material from `gap`
+    /// on with so many columns and rows of particles over the grid; `cells` are as large as that.
     fn towards_the_wall(gap: f64, [columns, rows]: [usize; 2], size: [f64; 2], shift: f64) -> Vec<f64> {
         let max = vector![3.0 * size[0], 6.0 * size[1]];
         let grid = Grid::<f64, 2>::new(vector![0.0, 0.0], max, [3, 6]).unwrap();
@@ -211,7 +213,8 @@ mod tests {
             .collect()
     }
 
-    /// Columns from two to eight a cell, rows from one to eight, cells 8:1 to 1:8, and rows that have run along the wall.
+    /// Columns from two to eight a cell, rows from one to eight, cells 8:1 to 1:8, and rows that have run
+    /// along the wall.
     fn each_layout(mut f: impl FnMut([usize; 2], [f64; 2], f64)) {
         for columns in [6, 7, 8, 10, 13, 24] {
             for rows in [12, 13, 16, 18, 25, 48] {

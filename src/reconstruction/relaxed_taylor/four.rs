@@ -146,8 +146,8 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
         self.own_is_hard = own.hard;
     }
 
-    /// Coefficients of what is integrated, from the own sums: the own fit, and where that has not all functions the wide one with,
-    /// on top of it, what the own particles see beside that.
+    /// Coefficients of what is integrated, from the own sums: the own fit, and where that has not all
+    /// functions the wide one with, on top of it, what the own particles see beside that.
     #[inline(always)]
     pub(super) fn integrated<K: Packs<T>, const C: usize>(
         &self,
@@ -202,8 +202,9 @@ impl<T: Scalar, const D: usize, const NB: usize> FourFits<T, D, NB> {
         self.own_coefficients(k, &right, sums.components)
     }
 
-    /// Adds to the wide fits the constants with which their slopes leave the means of the cells' fits alone, wherever in the
-    /// cell its particles are: a slope that changes turns about the middle of the cell, and not of the particles.
+    /// Adds to the wide fits the constants with which their slopes leave the means of the cells' fits alone,
+    /// wherever in the cell its particles are: a slope that changes turns about the middle of the cell, and
+    /// not of the particles.
     #[inline(always)]
     pub(super) fn keep_means_of_cells<K: Packs<T>, const C: usize>(
         &self,
@@ -355,8 +356,8 @@ fn with_neighbours<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
     gram
 }
 
-/// Sums of functions times components over the particles of all occupied cells, four cells after four: of each function each
-/// component in four lanes.
+/// Sums of functions times components over the particles of all occupied cells, four cells after four: of
+/// each function each component in four lanes.
 #[derive(Clone, Copy)]
 pub(super) struct KeptSums<'a, T> {
     pub(super) values: &'a [[T; LANES]],

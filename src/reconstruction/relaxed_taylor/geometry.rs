@@ -78,8 +78,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         }
     }
 
-    /// The same along one axis with all cells that follow each other without a gap and hold less particles than functions: as many as
-    /// cells, and the degree of the basis more.
+    /// The same along one axis with all cells that follow each other without a gap and hold less particles
+    /// than functions: as many as cells, and the degree of the basis more.
     fn leave_short_runs(&mut self, cloud: &Cloud<'_, T, D>) {
         let mut first = 0;
         for run in cloud.bins.occupied().chunk_by(|a, b| a + 1 == *b) {
@@ -92,7 +92,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         }
     }
 
-    /// Whether particles determine a cell next to this one or, beyond one dimension, where ties reach further, next to that.
+    /// Whether particles determine a cell next to this one or, beyond one dimension, where ties reach
+    /// further, next to that.
     fn is_held(&self, cloud: &Cloud<'_, T, D>, place: usize) -> bool {
         let holds =
             |place: usize| matches!(self.cells[place].filling, Filling::Filled | Filling::PartlyFilled);
@@ -107,8 +108,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         held
     }
 
-    /// Whether a whole cell whose particles see no squares, as happens for a while where particles cross, is beside one whose
-    /// particles do: they share functions, and a tie would only smooth what is determined.
+    /// Whether a whole cell whose particles see no squares, as happens for a while where particles cross, is
+    /// beside one whose particles do: they share functions, and a tie would only smooth what is determined.
     fn sees_squares_beside(&self, cloud: &Cloud<'_, T, D>, place: usize) -> bool {
         let mut seen = false;
         if self.cells[place].kind == Kind::Batch {

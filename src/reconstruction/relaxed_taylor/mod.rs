@@ -36,36 +36,37 @@ const GROUPS: usize = CELLS / LANES;
 /// Wave speeds in neighbouring cells that differ by more than this factor are those of two materials.
 const ALIKE: f64 = 2.0;
 
-/// Taylor least squares for long runs, our own: published TLS gains energy wherever particles cross cell edges
-/// or do not lie evenly in their cells.
+/// Taylor least squares for long runs, our own: published TLS gains energy wherever particles cross cell
+/// edges or do not lie evenly in their cells.
 ///
-/// Four things together: mass and momentum of the DOFs straight from the particles; their consistent mass matrix in both the
-/// acceleration and the velocity; the stress by the free fit and Gauss quadrature, as published; and in every step each
-/// particle's stress and velocity a little nearer to what their fits see,
+/// Four things together: mass and momentum of the DOFs straight from the particles; their consistent mass
+/// matrix in both the acceleration and the velocity; the stress by the free fit and Gauss quadrature, as
+/// published; and in every step each particle's stress and velocity a little nearer to what their fits see,
 ///
 /// $$v_p \mathrel{+}= \beta_o(\hat v(x_p) - v_p),\qquad
 ///   \sigma_p \mathrel{+}= \beta_o(\hat\sigma(x_p) - \sigma_p) + \beta_n(\bar\sigma(x_p) - \sigma_p).$$
 ///
-/// $\hat v$ and $\hat\sigma$ are the fits of the particle's own cell, $\bar\sigma$ is the fit through the particles of the
-/// cell *and* of those that share a face with it. Particles carry more than a cell's polynomial sees. What the fit does not
-/// see does no work now, and returns when particles cross: the first term takes it away. What a cell's few particles determine
-/// badly the neighbours know: the second term bounds it. The fit of the velocity is weighted with the masses: it keeps the momentum
-/// exactly and never raises the kinetic energy, because it is a projection in the very product that measures it.
+/// $\hat v$ and $\hat\sigma$ are the fits of the particle's own cell, $\bar\sigma$ is the fit through the
+/// particles of the cell *and* of those that share a face with it. Particles carry more than a cell's
+/// polynomial sees. What the fit does not see does no work now, and returns when particles cross: the first
+/// term takes it away. What a cell's few particles determine badly the neighbours know: the second term
+/// bounds it. The fit of the velocity is weighted with the masses: it keeps the momentum exactly and never
+/// raises the kinetic energy, because it is a projection in the very product that measures it.
 ///
-/// Where the basis has one gradient in a cell ([`RelaxedTaylor::for_basis`]), $\bar\sigma$ gets a constant with which its slope
-/// leaves the mean of the cell's fit alone: the mean is all that does work there.
+/// Where the basis has one gradient in a cell ([`RelaxedTaylor::for_basis`]), $\bar\sigma$ gets a constant
+/// with which its slope leaves the mean of the cell's fit alone: the mean is all that does work there.
 ///
-/// The shares follow from [`Relaxation`] rates, for each crossing of a cell by a wave or by the particles, so that a smaller time step
-/// changes nothing. A cell whose particles do not
-/// tell all functions apart takes the fit with its neighbours for the force too, if that one can. The
-/// stress of a law with a state of its own (a deformation, plastic history) is moved by straining the state
+/// The shares follow from [`Relaxation`] rates, for each crossing of a cell by a wave or by the particles, so
+/// that a smaller time step changes nothing. A cell whose particles do not tell all functions apart takes the
+/// fit with its neighbours for the force too, if that one can. The stress of a law with a state of its own (a
+/// deformation, plastic history) is moved by straining the state
 /// ([`ConstitutiveLaw::strain_for`](crate::law::ConstitutiveLaw::strain_for)).
 ///
-/// In one dimension a cell ends where a body's surface cuts it. Beyond, where material ends within a cell on any slant, the particles
-/// themselves are the points of its force, nothing is relaxed there, and the stepper ties its functions to those of the next
-/// cells ([`crate::mass::Penalty`]). The same ties hold beyond one dimension where particles do not see all that a basis is made of.
-/// Cells that neither their particles nor the cells near them determine (one particle a cell, drops) are lumped, and stepped as by
-/// [`Shepard`].
+/// In one dimension a cell ends where a body's surface cuts it. Beyond, where material ends within a cell on
+/// any slant, the particles themselves are the points of its force, nothing is relaxed there, and the stepper
+/// ties its functions to those of the next cells ([`crate::mass::Penalty`]). The same ties hold beyond one
+/// dimension where particles do not see all that a basis is made of. Cells that neither their particles nor
+/// the cells near them determine (one particle a cell, drops) are lumped, and stepped as by [`Shepard`].
 #[doc = include_str!("../../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {
@@ -105,8 +106,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         }
     }
 
-    /// For a basis of degree `degree` whose gradients are not constant in a cell (for linear functions along one axis see
-    /// [`RelaxedTaylor::for_basis`]), with the default relaxation.
+    /// For a basis of degree `degree` whose gradients are not constant in a cell (for linear functions along
+    /// one axis see [`RelaxedTaylor::for_basis`]), with the default relaxation.
     pub fn for_degree(degree: usize) -> Self {
         Self {
             rule: GaussRule::new(GaussRule::<T, D, NB>::points_for_degree(degree)),
@@ -151,8 +152,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
     }
 }
 
-/// Makes room for so many values in all. Those of the last step stay: all are written anew, and to empty the list would be to fill
-/// it once more.
+/// Makes room for so many values in all. Those of the last step stay: all are written anew, and to empty the
+/// list would be to fill it once more.
 fn make_room<A>(values: &mut Vec<A>, count: usize) {
     values.reserve(count.saturating_sub(values.len()));
 }

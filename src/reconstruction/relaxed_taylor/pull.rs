@@ -11,7 +11,8 @@ use crate::scalar::Scalar;
 use crate::simd::{LANES, Number, Packs, dispatch, each, in_lanes};
 use crate::taylor::{Rights, taylor_lanes};
 
-/// For each occupied cell the polynomial and the share by which its particles are moved: `value += p(x) - share value`.
+/// For each occupied cell the polynomial and the share by which its particles are moved:
+/// `value += p(x) - share value`.
 #[derive(Clone, Debug)]
 pub(super) struct Corrections<T> {
     /// Coefficients in the frame of the whole cell, function by function.

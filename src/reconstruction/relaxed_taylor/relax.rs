@@ -83,7 +83,8 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         }
     }
 
-    /// Whether waves are about as fast in the neighbours of a cell as in itself: stress may jump where the material changes.
+    /// Whether waves are about as fast in the neighbours of a cell as in itself: stress may jump where the
+    /// material changes.
     fn are_alike(&self, crossed: &[CourantNumbers<T>], place: usize) -> bool {
         let [mut slowest, mut fastest] = [crossed[place].wave; 2];
         for other in self.fits[place / LANES].neighbours.iter().flatten() {

@@ -13,8 +13,8 @@ fn crossed(wave: f64) -> CourantNumbers<f64> {
     CourantNumbers { wave, motion: 0.0 }
 }
 
-/// Momentum and kinetic energy of unequal masses before and after: the one is kept, the other never raised, and a
-/// velocity that the fit sees is left alone.
+/// Momentum and kinetic energy of unequal masses before and after: the one is kept, the other never raised,
+/// and a velocity that the fit sees is left alone.
 #[test]
 fn a_weighted_relaxation_keeps_the_momentum_and_never_raises_the_energy() {
     let grid = Grid::new(vector![0.0], vector![3.0], [3]).unwrap();
@@ -51,8 +51,8 @@ fn off_the_middle(per_cell: usize) -> (Grid<f64, 1>, Vec<nalgebra::SVector<f64, 
     (grid, positions)
 }
 
-/// Linear functions leave stairs where the stress has a slope. The neighbours see the slope, and giving it to the particles of
-/// a cell must not change what the cell pulls with.
+/// Linear functions leave stairs where the stress has a slope. The neighbours see the slope, and giving it to
+/// the particles of a cell must not change what the cell pulls with.
 #[test]
 fn a_slope_from_the_neighbours_leaves_the_mean_of_a_cell_alone() {
     for per_cell in [2, 3, 4, 8] {
@@ -106,7 +106,8 @@ fn cells_alone_are_relaxed_as_four_at_once() {
     }
 }
 
-/// A cell that material ends in is told from a whole one by comparing patches: no rounding may make the two differ.
+/// A cell that material ends in is told from a whole one by comparing patches: no rounding may make the two
+/// differ.
 #[test]
 fn no_cell_of_a_full_box_counts_as_ended_within() {
     for cells in [47, 49, 98, 105, 107] {

@@ -1,7 +1,7 @@
 //! Sums over the particles of single cells along one axis, four particles at a time.
 //!
-//! Where the particles of a cell follow each other in memory, four of them are one load. With one particle of each of four cells
-//! in the lanes instead, every number has to be gathered.
+//! Where the particles of a cell follow each other in memory, four of them are one load. With one particle of
+//! each of four cells in the lanes instead, every number has to be gathered.
 
 use std::ops::Range;
 
@@ -23,8 +23,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// The particles of each of four cells, if they follow each other and can be read four by four among all `count` that there
-    /// are.
+    /// The particles of each of four cells, if they follow each other and can be read four by four among all
+    /// `count` that there are.
     #[inline(always)]
     pub(super) fn all<const D: usize>(
         bins: &Bins<D>,
@@ -39,8 +39,8 @@ impl Run {
         Some([run(cells[0])?, run(cells[1])?, run(cells[2])?, run(cells[3])?])
     }
 
-    /// Sums over the particles, which are those of `cell`, in parts that are spread over the lanes. Not inlined: among all that is done
-    /// with them, a compiler would keep none of them in registers.
+    /// Sums over the particles, which are those of `cell`, in parts that are spread over the lanes. Not
+    /// inlined: among all that is done with them, a compiler would keep none of them in registers.
     #[inline(always)]
     fn sums<
         S: WantedSums,
@@ -74,7 +74,8 @@ impl Run {
     }
 }
 
-/// Adds four particles, the first of which has the number `first`; `ones` are zero for those that do not count.
+/// Adds four particles, the first of which has the number `first`; `ones` are zero for those that do not
+/// count.
 #[inline(always)]
 fn add_four<
     S: WantedSums,

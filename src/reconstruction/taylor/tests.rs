@@ -9,7 +9,8 @@ use crate::particles::Bins;
 use crate::reconstruction::Densities;
 use crate::simd::{Four, LANES, Plain};
 
-/// Four cells at once leave one whose density might be negative to the way that draws it towards its mean, where it is a mass.
+/// Four cells at once leave one whose density might be negative to the way that draws it towards its mean,
+/// where it is a mass.
 #[test]
 fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
     let grid = Grid::new(vector![0.0, 0.0], vector![2.0, 1.0], [2, 1]).unwrap();
@@ -65,8 +66,8 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
     );
 }
 
-/// Particles that follow each other in their cells are summed in another way than those that do not: the integrals are the same,
-/// however many particles there are in a cell.
+/// Particles that follow each other in their cells are summed in another way than those that do not: the
+/// integrals are the same, however many particles there are in a cell.
 #[test]
 fn the_order_of_particles_does_not_matter() {
     let grid = Grid::new(vector![0.0], vector![7.0], [7]).unwrap();

@@ -1,14 +1,17 @@
-//! Virtual points (journal section 5.3): values that neighbouring cells lend to a cell whose particles do not determine
-//! all functions.
+//! Virtual points (journal section 5.3): values that neighbouring cells lend to a cell whose particles do not
+//! determine all functions.
 //!
-//! A *lender* is an occupied neighbour whose own particles determine its fit and whose patch reaches the common edge. Its
-//! polynomial's value at the edge is one more point of the borrower's least squares. The mean of a conserved fit is what the
-//! borrower's particles hold, as ever: a virtual point changes how an amount is spread over the cell, not the amount.
+//! A *lender* is an occupied neighbour whose own particles determine its fit and whose patch reaches the
+//! common edge. Its polynomial's value at the edge is one more point of the borrower's least squares. The
+//! mean of a conserved fit is what the borrower's particles hold, as ever: a virtual point changes how an
+//! amount is spread over the cell, not the amount.
 //!
-//! A cell without particles on one side borrows nothing: it may be filled in part only, so that its mean and the density at
-//! its other edge do not belong together, and the slope between them would be none of the field's.
+//! A cell without particles on one side borrows nothing: it may be filled in part only, so that its mean and
+//! the density at its other edge do not belong together, and the slope between them would be none of the
+//! field's.
 //!
-//! One dimension only: there an edge is a point. Lenders never borrow, so nothing depends on the order of cells.
+//! One dimension only: there an edge is a point. Lenders never borrow, so nothing depends on the order of
+//! cells.
 
 use nalgebra::SVector;
 
@@ -302,7 +305,8 @@ mod tests {
         taylor.prepare(&cloud);
         let value = |p: usize| 2.0 + line.positions[p][0] - 3.0 * line.positions[p][0].powi(2);
         let free = taylor.free_coefficients(&cloud, value)[1];
-        // At s = 2 (x - 3/2): 2 + 3/2 - 27/4 + (1/2 - 9/2) s - 3/4 s^2, of which -1/4 is the mean of the last.
+        // At s = 2 (x - 3/2): 2 + 3/2 - 27/4 + (1/2 - 9/2) s - 3/4 s^2, of which -1/4 is the mean of the
+        // last.
         for (found, expected) in free.into_iter().zip([-3.5, -4.0, -1.5]) {
             assert_relative_eq!(found, expected, max_relative = 1e-13);
         }

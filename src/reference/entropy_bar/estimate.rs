@@ -6,8 +6,9 @@ use super::EntropyBar;
 /// How far an entropy solution and that on half the cells differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EntropyEstimate {
-    /// Integral of the difference of the stresses over that of the stress. The mean, not the mean square: a shock that is a
-    /// cell too wide has a difference of the order of the cell in the one and of its root in the other.
+    /// Integral of the difference of the stresses over that of the stress. The mean, not the mean square: a
+    /// shock that is a cell too wide has a difference of the order of the cell in the one and of its root in
+    /// the other.
     pub stress: f64,
     /// Difference of the energies, each over its initial one.
     pub energy: f64,
@@ -16,8 +17,8 @@ pub struct EntropyEstimate {
 impl<L: Hyperelastic + Clone> EntropyBar<L> {
     /// Estimates the errors at `time`, s, by comparing with half the cells. Advances to `time`.
     ///
-    /// The numbers are about the *coarser* solution: the error of this one is smaller, four times where nothing has broken,
-    /// about twice after that. The stress's is 0 while there is none.
+    /// The numbers are about the *coarser* solution: the error of this one is smaller, four times where
+    /// nothing has broken, about twice after that. The stress's is 0 while there is none.
     ///
     /// # Errors
     /// As [`advance`](Reference::advance), of either solution, and where there are fewer than four cells.

@@ -30,8 +30,8 @@ fn speed<L: UniaxialLaw>(law: &L, density: f64, stretch: f64) -> Result<f64, Ref
     }
 }
 
-/// Between two sides: two waves of one speed, the largest of either side and of what lies between them. A shock is never
-/// faster than the waves behind it, so none is faster than that.
+/// Between two sides: two waves of one speed, the largest of either side and of what lies between them. A
+/// shock is never faster than the waves behind it, so none is faster than that.
 pub(super) fn between<L: UniaxialLaw>(
     law: &L,
     density: f64,
@@ -52,8 +52,8 @@ pub(super) fn between<L: UniaxialLaw>(
     })
 }
 
-/// At an end: between the bar's side and its mirror image, which has the opposite velocity beyond a fixed end and the opposite
-/// stress beyond a free one. `outwards` is 1 at the right end, -1 at the left one.
+/// At an end: between the bar's side and its mirror image, which has the opposite velocity beyond a fixed end
+/// and the opposite stress beyond a free one. `outwards` is 1 at the right end, -1 at the left one.
 pub(super) fn end<L: UniaxialLaw>(
     law: &L,
     density: f64,

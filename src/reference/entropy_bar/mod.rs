@@ -13,24 +13,28 @@ use super::{BarProblem, Hyperelastic, Reference, ReferenceError, State, Uniaxial
 pub use estimate::EntropyEstimate;
 use scheme::{Motion, Scheme};
 
-/// Cells of the benchmark. Energy: 2e-7 of the initial one is lost before waves break (at 0.1 s), afterwards too much is, 3e-3 at
-/// 1 s and at 2 s, 1e-3 at 5 s, 4e-4 at 10 s. Stress at 0.1 s: 1.2e-6. A second of motion takes a second.
+/// Cells of the benchmark. Energy: 2e-7 of the initial one is lost before waves break (at 0.1 s), afterwards
+/// too much is, 3e-3 at 1 s and at 2 s, 1e-3 at 5 s, 4e-4 at 10 s. Stress at 0.1 s: 1.2e-6. A second of
+/// motion takes a second.
 const CELLS: usize = 1000;
 
-/// A converged *entropy* solution of `rho0 u_tt = d sigma/dX + rho0 b(t)`, `sigma = stress(J)`, `J = 1 + du/dX`.
+/// A converged *entropy* solution of `rho0 u_tt = d sigma/dX + rho0 b(t)`, `sigma = stress(J)`,
+/// `J = 1 + du/dX`.
 ///
-/// As a first-order system this is `v_t = sigma_X / rho0 + b`, `J_t = v_X`. Once its waves have broken it has many weak
-/// solutions; the one wanted is that whose shocks dissipate energy, `d/dt (rho0 v^2 / 2 + W(J)) <= d/dX (sigma v)`.
+/// As a first-order system this is `v_t = sigma_X / rho0 + b`, `J_t = v_X`. Once its waves have broken it has
+/// many weak solutions; the one wanted is that whose shocks dissipate energy,
+/// `d/dt (rho0 v^2 / 2 + W(J)) <= d/dX (sigma v)`.
 ///
-/// Finite volumes: averages in equal cells, limited slopes, at each face the flux of two waves that run as fast as any wave
-/// there (A. Harten, P. D. Lax, B. van Leer, SIAM Review 25, 1983), which holds that inequality without slopes; time by the
-/// Runge-Kutta method of order 2 that keeps it (S. Gottlieb, C.-W. Shu, E. Tadmor, SIAM Review 43, 2001). Second order where
-/// the solution is smooth, a shock is two or three cells wide. Both waves of this system always run, one to either side, so
-/// that no rarefaction needs an entropy fix.
+/// Finite volumes: averages in equal cells, limited slopes, at each face the flux of two waves that run as
+/// fast as any wave there (A. Harten, P. D. Lax, B. van Leer, SIAM Review 25, 1983), which holds that
+/// inequality without slopes; time by the Runge-Kutta method of order 2 that keeps it (S. Gottlieb, C.-W.
+/// Shu, E. Tadmor, SIAM Review 43, 2001). Second order where the solution is smooth, a shock is two or three
+/// cells wide. Both waves of this system always run, one to either side, so that no rarefaction needs an
+/// entropy fix.
 ///
 /// How good a solution is, [`error_estimate`](EntropyBar::error_estimate) says. Where nothing has broken yet
-/// [`LagrangianBar`](super::LagrangianBar) is better by many digits. For a law whose stiffness is not monotonic the speed
-/// of a face is a guess from three stretches.
+/// [`LagrangianBar`](super::LagrangianBar) is better by many digits. For a law whose stiffness is not
+/// monotonic the speed of a face is a guess from three stretches.
 ///
 /// ```
 /// # use materialpoint::reference::{EntropyBar, Hill, Reference, ReferenceError};
@@ -51,10 +55,12 @@ pub struct EntropyBar<L> {
 }
 
 impl<L: UniaxialLaw> EntropyBar<L> {
-    /// The solution of `problem` on this many equal `cells`, at time 0. The work to a given time grows with their square.
+    /// The solution of `problem` on this many equal `cells`, at time 0. The work to a given time grows with
+    /// their square.
     ///
     /// # Errors
-    /// Where a parameter is out of range (`cells` between 2 and 1 000 000), or the initial velocity is not finite.
+    /// Where a parameter is out of range (`cells` between 2 and 1 000 000), or the initial velocity is not
+    /// finite.
     pub fn new(problem: BarProblem<L>, cells: usize) -> Result<Self, ReferenceError> {
         problem.check()?;
         let scheme = Scheme::new(&problem, check::within("number of cells", cells, 2, 1_000_000)?);
@@ -68,8 +74,8 @@ impl<L: UniaxialLaw> EntropyBar<L> {
         })
     }
 
-    /// The vibrating bar of [`LagrangianBar::vibrating_bar`](super::LagrangianBar::vibrating_bar): both ends fixed, initial
-    /// velocity `velocity sin(pi X / length)`; length in m, density in kg/m3, velocity in m/s.
+    /// The vibrating bar of [`LagrangianBar::vibrating_bar`](super::LagrangianBar::vibrating_bar): both ends
+    /// fixed, initial velocity `velocity sin(pi X / length)`; length in m, density in kg/m3, velocity in m/s.
     ///
     /// # Errors
     /// As [`new`](EntropyBar::new).
@@ -110,8 +116,8 @@ impl<L: UniaxialLaw> EntropyBar<L> {
 }
 
 impl<L: Hyperelastic> EntropyBar<L> {
-    /// Kinetic and stored energy at the time of the last `advance`, per cross-section, J/m2: that of the cells' averages, which
-    /// is less than that of the solution by a share of the order of the cell's square.
+    /// Kinetic and stored energy at the time of the last `advance`, per cross-section, J/m2: that of the
+    /// cells' averages, which is less than that of the solution by a share of the order of the cell's square.
     pub fn energy(&self) -> f64 {
         self.scheme.energy(&self.problem, &self.motion)
     }
@@ -136,8 +142,9 @@ impl<L: UniaxialLaw> Reference for EntropyBar<L> {
     /// Marches from the last time to `time`.
     ///
     /// # Errors
-    /// Where `time` is negative or not finite, the body force is not finite, or the material is turned inside out,
-    /// loses its stiffness or leaves the finite numbers. The state then is that of the last step that succeeded.
+    /// Where `time` is negative or not finite, the body force is not finite, or the material is turned inside
+    /// out, loses its stiffness or leaves the finite numbers. The state then is that of the last step that
+    /// succeeded.
     fn advance(&mut self, time: f64) -> Result<(), ReferenceError> {
         check::time(time)?;
         if time < self.motion.time {
@@ -150,8 +157,8 @@ impl<L: UniaxialLaw> Reference for EntropyBar<L> {
         Ok(())
     }
 
-    /// Beyond the ends, the state of the nearer end. Within a shock, which is two or three cells wide, a state between those on
-    /// its sides.
+    /// Beyond the ends, the state of the nearer end. Within a shock, which is two or three cells wide, a
+    /// state between those on its sides.
     fn at(&self, x0: f64) -> State {
         self.scheme
             .state(&self.problem, &self.motion, x0 - self.problem.origin)

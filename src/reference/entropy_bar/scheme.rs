@@ -4,10 +4,12 @@ use super::super::{BarProblem, End, Hyperelastic, ReferenceError, State, Uniaxia
 use super::face::{Flux, Side, between, end};
 use super::slope::limited;
 
-/// Part of the time a wave takes through a cell that a step may last: half, so that the waves of a cell's two faces do not meet.
+/// Part of the time a wave takes through a cell that a step may last: half, so that the waves of a cell's two
+/// faces do not meet.
 const STEP_FRACTION: f64 = 0.5;
 
-/// A state of the bar. The stretch of a cell is what its faces make of it, so displacements and stretches agree exactly.
+/// A state of the bar. The stretch of a cell is what its faces make of it, so displacements and stretches
+/// agree exactly.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
     /// s
@@ -22,7 +24,8 @@ pub(super) struct Motion {
 #[derive(Clone, Debug)]
 pub(super) struct Scheme {
     size: f64,
-    /// What the limiter takes for smooth, as squares of relative differences: the cube of a cell's share of the bar.
+    /// What the limiter takes for smooth, as squares of relative differences: the cube of a cell's share of
+    /// the bar.
     floor: f64,
     stretch: Vec<f64>,
     /// Limited differences of each cell.

@@ -1,13 +1,13 @@
 //! Differences across a cell that do not overshoot.
 
-/// The limited difference across a cell from those to its neighbours: van Albada's average (G. D. van Albada, B. van Leer,
-/// W. W. Roberts, Astron. Astrophys. 108, 1982),
+/// The limited difference across a cell from those to its neighbours: van Albada's average (G. D. van Albada,
+/// B. van Leer, W. W. Roberts, Astron. Astrophys. 108, 1982),
 ///
 /// `((b^2 + e) a + (a^2 + e) b) / (a^2 + b^2 + 2 e)`.
 ///
-/// Where `a` and `b` are alike it is their mean, beside a jump the smaller one. `floor` is `e`: differences that are small
-/// against its root are averaged whatever their signs, so that smooth extrema, where they are of the order of the cell's
-/// square, are not clipped.
+/// Where `a` and `b` are alike it is their mean, beside a jump the smaller one. `floor` is `e`: differences
+/// that are small against its root are averaged whatever their signs, so that smooth extrema, where they are
+/// of the order of the cell's square, are not clipped.
 pub(super) fn limited(a: f64, b: f64, floor: f64) -> f64 {
     let (square_a, square_b) = (a * a + floor, b * b + floor);
     let sum = square_a + square_b;

@@ -1,6 +1,7 @@
 //! Tests of the entropy solution against the converged smooth one, a single shock, invariants and itself.
 //!
-//! The bar is that of the benchmark: length 1 m, density 2e3 kg/m3, Hill's law with 4e4 Pa, 0.8 m/s. It breaks at 0.79 s.
+//! The bar is that of the benchmark: length 1 m, density 2e3 kg/m3, Hill's law with 4e4 Pa, 0.8 m/s. It
+//! breaks at 0.79 s.
 
 use super::super::{End, Hill, LagrangianBar};
 use super::*;
@@ -63,8 +64,8 @@ fn follows_the_smooth_solution_until_waves_break() {
     }
 }
 
-/// A bar falls onto its base: a shock runs up, behind it the bar is at rest. From the jumps of `J_t = v_X` and
-/// `rho0 v_t = sigma_X` follow `(1 - J)^2 / J = rho0 V^2 / E` and the speed `V / (1 - J)`.
+/// A bar falls onto its base: a shock runs up, behind it the bar is at rest. From the jumps of `J_t = v_X`
+/// and `rho0 v_t = sigma_X` follow `(1 - J)^2 / J = rho0 V^2 / E` and the speed `V / (1 - J)`.
 #[test]
 fn a_single_shock_has_the_jumps_of_rankine_and_hugoniot() {
     let fall = 2.0_f64;

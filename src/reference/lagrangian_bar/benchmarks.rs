@@ -17,13 +17,13 @@ const COLUMN: Resolution = Resolution {
 };
 
 impl<L: UniaxialLaw> LagrangianBar<L> {
-    /// The vibrating bar: both ends fixed, initial velocity `velocity sin(pi X / length)`; length in m, density in
-    /// kg/m3, velocity in m/s. The law carries Young's modulus.
+    /// The vibrating bar: both ends fixed, initial velocity `velocity sin(pi X / length)`; length in m,
+    /// density in kg/m3, velocity in m/s. The law carries Young's modulus.
     ///
-    /// Any law but the linear one steepens the waves until they break. Under Hill's law the bar is an isothermal gas in
-    /// a closed pipe: its two waves of amplitude `velocity / 2` break at about `2 length / (pi velocity)`, whatever the
-    /// modulus. Here 0.8 m/s on 1 m breaks at 0.792 s and 0.08 m/s at 8.0 s. Up to then energy is conserved exactly and
-    /// the solution converges; from then on it does not.
+    /// Any law but the linear one steepens the waves until they break. Under Hill's law the bar is an
+    /// isothermal gas in a closed pipe: its two waves of amplitude `velocity / 2` break at about
+    /// `2 length / (pi velocity)`, whatever the modulus. Here 0.8 m/s on 1 m breaks at 0.792 s and 0.08 m/s
+    /// at 8.0 s. Up to then energy is conserved exactly and the solution converges; from then on it does not.
     ///
     /// # Errors
     /// As [`new`](LagrangianBar::new).
@@ -34,9 +34,9 @@ impl<L: UniaxialLaw> LagrangianBar<L> {
         Self::new(problem, BAR)
     }
 
-    /// The compacting column: base fixed, top free, at rest, under the body force `body_force min(t / ramp, 1)`; height
-    /// in m, density in kg/m3, body force in N/kg (negative towards the base), ramp in s. The law carries Young's
-    /// modulus.
+    /// The compacting column: base fixed, top free, at rest, under the body force
+    /// `body_force min(t / ramp, 1)`; height in m, density in kg/m3, body force in N/kg (negative towards the
+    /// base), ramp in s. The law carries Young's modulus.
     ///
     /// # Errors
     /// Where `ramp` is not positive, and as [`new`](LagrangianBar::new).

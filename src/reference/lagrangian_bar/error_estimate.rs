@@ -4,13 +4,13 @@ use super::super::{Reference, ReferenceError, UniaxialLaw};
 use super::LagrangianBar;
 
 impl<L: UniaxialLaw + Clone> LagrangianBar<L> {
-    /// Estimates the relative error of the stress at `time`, s, in the L2 norm over the bar, by comparing with half the
-    /// elements. Advances to `time`.
+    /// Estimates the relative error of the stress at `time`, s, in the L2 norm over the bar, by comparing
+    /// with half the elements. Advances to `time`.
     ///
-    /// The number is the difference of the two solutions, so it is about the error of the *coarser* one: that of this
-    /// one is smaller, by the factor that a doubling gains (at least 16 where the solution is smooth). It includes the
-    /// error in time, because the coarser solution takes twice the step. It is 0 while both have no stress at all, and
-    /// infinite where only this one has none.
+    /// The number is the difference of the two solutions, so it is about the error of the *coarser* one: that
+    /// of this one is smaller, by the factor that a doubling gains (at least 16 where the solution is
+    /// smooth). It includes the error in time, because the coarser solution takes twice the step. It is 0
+    /// while both have no stress at all, and infinite where only this one has none.
     ///
     /// # Errors
     /// As [`advance`](Reference::advance), of either solution.

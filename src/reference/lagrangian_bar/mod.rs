@@ -18,24 +18,25 @@ pub use resolution::Resolution;
 
 /// Part of the stable step that is taken.
 ///
-/// The frequency is bounded for the state at the start of the step, so something must be left for what stiffens within
-/// it. At half the limit and degree 8 neither the error in time nor that in space is wasted: a fifth of this step
-/// lowers the error of the large-strain bar at 0.5 s by a factor of 4.
+/// The frequency is bounded for the state at the start of the step, so something must be left for what
+/// stiffens within it. At half the limit and degree 8 neither the error in time nor that in space is wasted:
+/// a fifth of this step lowers the error of the large-strain bar at 0.5 s by a factor of 4.
 const STEP_FRACTION: f64 = 0.5;
 
 /// A converged solution of `rho0 u_tt = d sigma/dX + rho0 b(t)`, `sigma = stress(J)`, `J = 1 + du/dX`, in the
 /// reference configuration.
 ///
-/// Space is discretised by spectral elements: Lagrange polynomials on the Gauss-Lobatto-Legendre nodes of equal
-/// elements, quadrature on the same nodes, hence a diagonal mass matrix; a free end is natural. Source: C. Canuto,
-/// M. Y. Hussaini, A. Quarteroni, T. A. Zang, *Spectral Methods*, Springer 2006. Time is marched by the Nyström method
-/// of order 4, with a step from a bound of the largest frequency. But for the error in time the scheme keeps the energy
-/// exactly.
+/// Space is discretised by spectral elements: Lagrange polynomials on the Gauss-Lobatto-Legendre nodes of
+/// equal elements, quadrature on the same nodes, hence a diagonal mass matrix; a free end is natural. Source:
+/// C. Canuto, M. Y. Hussaini, A. Quarteroni, T. A. Zang, *Spectral Methods*, Springer 2006. Time is marched
+/// by the Nyström method of order 4, with a step from a bound of the largest frequency. But for the error in
+/// time the scheme keeps the energy exactly.
 ///
-/// How good a solution is, [`error_estimate`](LagrangianBar::error_estimate) says. Where the solution is smooth, the
-/// error falls exponentially with the degree. Where the body force has a kink, the kink travels with the waves and
-/// limits the order. **Once a shock has formed there is no convergence**: nothing here dissipates energy, so the shock
-/// leaves oscillations of the size of its jump. The estimate then stays large.
+/// How good a solution is, [`error_estimate`](LagrangianBar::error_estimate) says. Where the solution is
+/// smooth, the error falls exponentially with the degree. Where the body force has a kink, the kink travels
+/// with the waves and limits the order. **Once a shock has formed there is no convergence**: nothing here
+/// dissipates energy, so the shock leaves oscillations of the size of its jump. The estimate then stays
+/// large.
 ///
 /// ```
 /// # use materialpoint::reference::{Hill, LagrangianBar, Reference, ReferenceError};
@@ -61,8 +62,8 @@ impl<L: UniaxialLaw> LagrangianBar<L> {
     /// The solution of `problem` with the given `resolution`, at time 0.
     ///
     /// # Errors
-    /// Where a parameter is out of range, the initial velocity is not finite, or the stiffness of the undeformed
-    /// material is not positive.
+    /// Where a parameter is out of range, the initial velocity is not finite, or the stiffness of the
+    /// undeformed material is not positive.
     pub fn new(problem: BarProblem<L>, resolution: Resolution) -> Result<Self, ReferenceError> {
         problem.check()?;
         let operator = Operator::new(&problem, resolution.check()?);
@@ -192,8 +193,9 @@ impl<L: UniaxialLaw> Reference for LagrangianBar<L> {
     /// Marches from the last time to `time`.
     ///
     /// # Errors
-    /// Where `time` is negative or not finite, the body force is not finite, or the material is turned inside out,
-    /// loses its stiffness or leaves the finite numbers. The state then is that of the last step that succeeded.
+    /// Where `time` is negative or not finite, the body force is not finite, or the material is turned inside
+    /// out, loses its stiffness or leaves the finite numbers. The state then is that of the last step that
+    /// succeeded.
     fn advance(&mut self, time: f64) -> Result<(), ReferenceError> {
         check::time(time)?;
         if time < self.motion.time {

@@ -2,10 +2,10 @@
 
 /// Largest stable product of angular frequency and step.
 ///
-/// On `u'' = -w^2 u`, with `z = (w dt)^2`, one step multiplies by a matrix of trace `2 - z + z^2/12` and determinant
-/// `1 - z^3/288`. Both eigenvalues lie within the unit circle up to `z = 6.690`, the root of
-/// `4 - z + z^2/12 - z^3/288`; below it an oscillation decays by the factor `1 - (w dt)^6/576` in each step, which
-/// only unresolved modes feel.
+/// On `u'' = -w^2 u`, with `z = (w dt)^2`, one step multiplies by a matrix of trace `2 - z + z^2/12` and
+/// determinant `1 - z^3/288`. Both eigenvalues lie within the unit circle up to `z = 6.690`, the root of
+/// `4 - z + z^2/12 - z^3/288`; below it an oscillation decays by the factor `1 - (w dt)^6/576` in each step,
+/// which only unresolved modes feel.
 pub(super) const STABILITY_LIMIT: f64 = 2.58;
 
 /// Time, displacement and velocity of all nodes.
@@ -32,9 +32,9 @@ impl Motion {
 
 /// The method's work space.
 ///
-/// Source: E. J. Nyström 1925; E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*,
-/// section II.14. Where the acceleration does not depend on the velocity, the method has the order of the classical
-/// Runge-Kutta method at three evaluations instead of four, and a smaller error.
+/// Source: E. J. Nyström 1925; E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations
+/// I*, section II.14. Where the acceleration does not depend on the velocity, the method has the order of the
+/// classical Runge-Kutta method at three evaluations instead of four, and a smaller error.
 #[derive(Clone, Debug)]
 pub(super) struct Nystrom {
     stage: Vec<f64>,
@@ -53,7 +53,8 @@ impl Nystrom {
 
     /// Moves `motion` on by `step`, s.
     ///
-    /// `acceleration` takes time and displacement and writes the acceleration. After its error `motion` is unchanged.
+    /// `acceleration` takes time and displacement and writes the acceleration. After its error `motion` is
+    /// unchanged.
     pub(super) fn step<E>(
         &mut self,
         motion: &mut Motion,

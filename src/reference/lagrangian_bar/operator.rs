@@ -10,7 +10,8 @@ use super::{BarProblem, End, Resolution};
 #[derive(Clone, Debug)]
 pub(super) struct Operator {
     rule: Lobatto,
-    /// Row `i` of an element: what the stress at each of its nodes contributes to the internal force on node `i`.
+    /// Row `i` of an element: what the stress at each of its nodes contributes to the internal force on node
+    /// `i`.
     weak_derivative: Vec<f64>,
     /// Mass of each node, kg/m2.
     mass: Vec<f64>,
@@ -145,7 +146,8 @@ impl Operator {
 
     /// State at the distance `x`, m, from the left end; beyond the ends, the state of the end.
     ///
-    /// The stress is the law's at the interpolated stretch, which at the edge of two elements is the right one's.
+    /// The stress is the law's at the interpolated stretch, which at the edge of two elements is the right
+    /// one's.
     pub(super) fn state(
         &self,
         law: &impl UniaxialLaw,
@@ -257,7 +259,8 @@ mod tests {
         assert!((squares - exact).abs() < 1e-13, "{squares} against {exact}");
     }
 
-    /// Under u = X^3 - 12 X the free right end, at 2, bears no stress, and E u_XX / rho = 18 X / 5 everywhere.
+    /// Under u = X^3 - 12 X the free right end, at 2, bears no stress, and E u_XX / rho = 18 X / 5
+    /// everywhere.
     #[test]
     fn acceleration_is_the_divergence_of_the_stress() {
         let operator = operator([End::Fixed, End::Free]);

@@ -71,8 +71,8 @@ impl<L> BarProblem<L> {
 
     /// Gives the initial velocity, m/s, as a function of the distance from the left end, m; default 0.
     ///
-    /// A fixed end does not move, whatever the function says there: a function that is not zero at a fixed end starts
-    /// the motion with a jump.
+    /// A fixed end does not move, whatever the function says there: a function that is not zero at a fixed
+    /// end starts the motion with a jump.
     pub fn initial_velocity(self, velocity: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
         Self {
             initial_velocity: Arc::new(velocity),
@@ -80,8 +80,8 @@ impl<L> BarProblem<L> {
         }
     }
 
-    /// Gives the body force, N/kg, as a continuous function of time, s, and the times, s, at which it is not smooth;
-    /// default 0. The march makes each of those times the end of a step and so keeps its order.
+    /// Gives the body force, N/kg, as a continuous function of time, s, and the times, s, at which it is not
+    /// smooth; default 0. The march makes each of those times the end of a step and so keeps its order.
     pub fn body_force(self, force: impl Fn(f64) -> f64 + Send + Sync + 'static, kinks: &[f64]) -> Self {
         let mut kinks = kinks.to_vec();
         kinks.sort_by(f64::total_cmp);

@@ -8,8 +8,9 @@ const STEPS: usize = 400;
 /// Halvings of the interval of the tip's slope.
 const HALVINGS: usize = 60;
 
-/// A slender cantilever bent far by a force at its tip across the unbent beam, a force that keeps its direction (Bisshopp & Drucker 1945;
-/// Mattiasson 1981), without shear and stretch: with the slope $\theta$ over the length $s$ along the beam
+/// A slender cantilever bent far by a force at its tip across the unbent beam, a force that keeps its
+/// direction (Bisshopp & Drucker 1945; Mattiasson 1981), without shear and stretch: with the slope $\theta$
+/// over the length $s$ along the beam
 ///
 /// $$EI\,\theta'' = -P\cos\theta,\qquad \theta(0) = 0,\quad \theta'(L) = 0.$$
 ///
@@ -26,7 +27,8 @@ pub struct Elastica {
 }
 
 impl Elastica {
-    /// For a `length` (m), a bending stiffness `E I` (N m2; in plane strain `E/(1 - nu^2) t^3/12`, N m) and a `force` (N; in plane strain N/m).
+    /// For a `length` (m), a bending stiffness `E I` (N m2; in plane strain `E/(1 - nu^2) t^3/12`, N m) and a
+    /// `force` (N; in plane strain N/m).
     ///
     /// # Errors
     /// If one of them is not positive.

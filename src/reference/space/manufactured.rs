@@ -9,12 +9,13 @@ use crate::grid::Grid;
 use crate::law::Moduli;
 use crate::reference::ReferenceError;
 
-/// Standing waves along every axis of a box on rollers, at finite strain (Steffen, Wallstedt, Guilkey, Kirby & Berzins 2008;
-/// Wallstedt & Guilkey 2008): a neo-Hookean solid is driven by the body force that makes
+/// Standing waves along every axis of a box on rollers, at finite strain (Steffen, Wallstedt, Guilkey, Kirby
+/// & Berzins 2008; Wallstedt & Guilkey 2008): a neo-Hookean solid is driven by the body force that makes
 ///
 /// $$u_i = A\sin\frac{\pi X_i}{L_i}\sin\Bigl(\frac{\pi c t}{L_i} + i\pi\Bigr),\qquad c = \sqrt{E/\rho_0}$$
 ///
-/// exact. With $k_i = \pi/L_i$, $F_{ii} = 1 + \partial u_i/\partial X_i$ and $J = \prod F_{ii}$ the balance of momentum asks for
+/// exact. With $k_i = \pi/L_i$, $F_{ii} = 1 + \partial u_i/\partial X_i$ and $J = \prod F_{ii}$ the balance
+/// of momentum asks for
 ///
 /// $$b_i = k_i^2 u_i\Bigl(\frac{\lambda(1-\ln J)/F_{ii}^2 + \mu(1 + 1/F_{ii}^2)}{\rho_0} - c^2\Bigr).$$
 #[doc = include_str!("../../../docs/formulas.html")]
@@ -32,8 +33,8 @@ impl<const D: usize> Manufactured<D> {
     /// In the box of `grid`, with the initial `density` (kg/m3) and the `amplitude` (m).
     ///
     /// # Errors
-    /// If the density is not positive, or the amplitude not finite or so large that material would turn inside out
-    /// (`amplitude pi >= length`).
+    /// If the density is not positive, or the amplitude not finite or so large that material would turn
+    /// inside out (`amplitude pi >= length`).
     pub fn new(
         grid: &Grid<f64, D>,
         moduli: Moduli<f64>,

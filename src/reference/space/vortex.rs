@@ -8,18 +8,22 @@ use super::{FieldReference, FieldState};
 use crate::law::Moduli;
 use crate::reference::ReferenceError;
 
-/// A ring whose material circles turn by angles of their own and back (Brannon, Kamojjala & Sadeghirad 2011; Kamojjala, Brannon,
-/// Sadeghirad & Guilkey 2015): large shear and rotation without change of volume, the circles of the inner and outer radius at rest.
+/// A ring whose material circles turn by angles of their own and back (Brannon, Kamojjala & Sadeghirad 2011;
+/// Kamojjala, Brannon, Sadeghirad & Guilkey 2015): large shear and rotation without change of volume, the
+/// circles of the inner and outer radius at rest.
 ///
-/// With the middle radius $R_m$, half the width $w$ and $s = (R - R_m)/w$ every point turns about the centre by
+/// With the middle radius $R_m$, half the width $w$ and $s = (R - R_m)/w$ every point turns about the centre
+/// by
 ///
 /// $$\alpha(R, t) = A\,(1 - s^2)^2\,\sin\frac{\pi t}{T},\qquad x = Q(\alpha)X.$$
 ///
-/// With $\gamma = R\,\partial\alpha/\partial R$ this gives $F = Q(1 + \gamma\,e_\Theta\otimes e_R)$, $J = 1$. In the polar axes of the place
-/// now the neo-Hookean stress is $\sigma_{r\theta} = \mu\gamma$, $\sigma_{\theta\theta} = \mu\gamma^2$ and nothing else, free of tractions at both
-/// radii (around the ring there may be more of the material, at rest, or nothing), and the balance of momentum asks for
+/// With $\gamma = R\,\partial\alpha/\partial R$ this gives $F = Q(1 + \gamma\,e_\Theta\otimes e_R)$, $J = 1$.
+/// In the polar axes of the place now the neo-Hookean stress is $\sigma_{r\theta} = \mu\gamma$,
+/// $\sigma_{\theta\theta} = \mu\gamma^2$ and nothing else, free of tractions at both radii (around the ring
+/// there may be more of the material, at rest, or nothing), and the balance of momentum asks for
 ///
-/// $$b_r = \frac{\mu\gamma^2}{\rho R} - R\dot\alpha^2,\qquad b_\theta = R\ddot\alpha - \frac{\mu}{\rho}(3\alpha' + R\alpha'').$$
+/// $$b_r = \frac{\mu\gamma^2}{\rho R} - R\dot\alpha^2,\qquad b_\theta = R\ddot\alpha -
+/// \frac{\mu}{\rho}(3\alpha' + R\alpha'').$$
 ///
 /// In space the same happens in every plane across the third axis: a tube, for $\sigma_{zz} = 0$ too.
 #[doc = include_str!("../../../docs/formulas.html")]
@@ -63,8 +67,8 @@ impl<const D: usize> Vortex<D> {
     /// About `centre` (m), with the constant `density` (kg/m3).
     ///
     /// # Errors
-    /// If a radius, the density, the shear modulus or the time is not positive, the outer radius not larger than the inner one, or the
-    /// angle or the centre not finite.
+    /// If a radius, the density, the shear modulus or the time is not positive, the outer radius not larger
+    /// than the inner one, or the angle or the centre not finite.
     pub fn new(
         centre: SVector<f64, D>,
         ring: Ring,

@@ -6,9 +6,9 @@ use super::{ReferenceError, Soil, TwoPhaseReference, TwoPhaseState};
 
 /// Consolidation of a linear elastic layer at small strain: exact without inertia.
 ///
-/// The layer of height $H$ stands on a fixed, impermeable base; its top drains and bears the load $q$ from time 0 on,
-/// which the liquid carries at first, $p = q$. With $\xi = x/H$, $\tau = c_v t / H^2$ and the pressure $S(\xi, \tau)$ of
-/// a layer that starts at 1,
+/// The layer of height $H$ stands on a fixed, impermeable base; its top drains and bears the load $q$ from
+/// time 0 on, which the liquid carries at first, $p = q$. With $\xi = x/H$, $\tau = c_v t / H^2$ and the
+/// pressure $S(\xi, \tau)$ of a layer that starts at 1,
 ///
 /// $$\begin{aligned}
 /// p &= q S, & \sigma' &= q (1 - S), & u_s &= \frac{q H}{E} \int_0^\xi (1 - S) d\xi, \\\\
@@ -17,9 +17,9 @@ use super::{ReferenceError, Soil, TwoPhaseReference, TwoPhaseState};
 /// c_v &= \frac{k_0}{\gamma_w (1/E + n/K_w)}.
 /// \end{aligned}$$
 ///
-/// Source: K. Terzaghi 1925; as series in report 18-2, section 6.2 (see the [module](super)). Early times are summed over
-/// images instead, so that no time needs more than five terms. At time 0 the load has just been applied: velocities are
-/// 0 and $p = q$ up to the top; an instant later the top's velocities are infinite.
+/// Source: K. Terzaghi 1925; as series in report 18-2, section 6.2 (see the [module](super)). Early times are
+/// summed over images instead, so that no time needs more than five terms. At time 0 the load has just been
+/// applied: velocities are 0 and $p = q$ up to the top; an instant later the top's velocities are infinite.
 #[doc = include_str!("../../../docs/formulas.html")]
 ///
 /// ```
@@ -50,8 +50,8 @@ pub struct Consolidation {
 }
 
 impl Consolidation {
-    /// A layer of `height`, m, and constrained `modulus`, Pa, under `load`, Pa (negative in compression), with its base
-    /// at 0.
+    /// A layer of `height`, m, and constrained `modulus`, Pa, under `load`, Pa (negative in compression),
+    /// with its base at 0.
     ///
     /// # Errors
     /// Where a parameter is not finite, or height or modulus not positive, or the soil makes no sense.
@@ -174,8 +174,8 @@ mod tests {
         }
     }
 
-    /// Expected values from a 30-digit evaluation of the series: u_s, v_s, v_w, sigma', p; report's table 6 with another
-    /// permeability, at tau = 0.050, 1.01 and 0.0010.
+    /// Expected values from a 30-digit evaluation of the series: u_s, v_s, v_w, sigma', p; report's table 6
+    /// with another permeability, at tau = 0.050, 1.01 and 0.0010.
     #[test]
     #[rustfmt::skip]
     fn reproduces_reference_digits() {

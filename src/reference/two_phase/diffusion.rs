@@ -7,17 +7,18 @@ const SWITCH: f64 = 0.25;
 /// Terms of either sum. At the switch the first neglected one is below exp(-49) against 1.
 const TERMS: u8 = 5;
 
-/// The solution $S(\xi, \tau)$ of $S_\tau = S_{\xi\xi}$ on $0 < \xi < 1$ with $S = 1$ at $\tau = 0$, $S_\xi = 0$ at
-/// $\xi = 0$ and $S = 0$ at $\xi = 1$, with its integral and derivative.
+/// The solution $S(\xi, \tau)$ of $S_\tau = S_{\xi\xi}$ on $0 < \xi < 1$ with $S = 1$ at $\tau = 0$, $S_\xi =
+/// 0$ at $\xi = 0$ and $S = 0$ at $\xi = 1$, with its integral and derivative.
 ///
 /// For large $\tau$ the Fourier series, for small $\tau$ its dual, the sum over images of the drained face:
 ///
-/// $$S = \frac4\pi \sum_{j \ge 1} \frac{(-1)^{j-1}}{2j-1} \cos\frac{(2j-1)\pi\xi}{2} e^{-(2j-1)^2 \pi^2 \tau / 4}
+/// $$S = \frac4\pi \sum_{j \ge 1} \frac{(-1)^{j-1}}{2j-1} \cos\frac{(2j-1)\pi\xi}{2} e^{-(2j-1)^2 \pi^2 \tau
+/// / 4}
 ///     = 1 - \sum_{m \ge 0} (-1)^m \left(\operatorname{erfc}\frac{2m+1-\xi}{2\sqrt\tau}
 ///     + \operatorname{erfc}\frac{2m+1+\xi}{2\sqrt\tau}\right).$$
 ///
-/// Source: H. S. Carslaw and J. C. Jaeger, *Conduction of Heat in Solids*, Oxford 1959, section 3.3. At $\tau = 0$ the
-/// layer is still as it was, its face included.
+/// Source: H. S. Carslaw and J. C. Jaeger, *Conduction of Heat in Solids*, Oxford 1959, section 3.3. At $\tau
+/// = 0$ the layer is still as it was, its face included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layer {
     /// $1 - S$, without cancellation where it is small.
@@ -50,7 +51,8 @@ impl Layer {
 
     fn series(xi: f64, tau: f64) -> Self {
         let (mut remaining, mut below, mut gradient) = (0.0, 0.0, 0.0);
-        // The cosine with its sign is the sine of the distance from the drained face, which is exactly 0 there.
+        // The cosine with its sign is the sine of the distance from the drained face, which is exactly 0
+        // there.
         for j in 0..TERMS {
             let sign = if j % 2 == 0 { 1.0 } else { -1.0 };
             let odd = f64::from(2 * j + 1);
@@ -153,7 +155,8 @@ mod tests {
         }
     }
 
-    /// Expected values from a 30-digit evaluation of erfc; the deep layer has drained by 2e-45 only, and says so.
+    /// Expected values from a 30-digit evaluation of erfc; the deep layer has drained by 2e-45 only, and says
+    /// so.
     #[test]
     fn early_times_keep_their_relative_precision() {
         let deep = Layer::at(0.5, 6.25e-4).drained;

@@ -1,10 +1,12 @@
-//! Exact and converged solutions of one-dimensional saturated soil: a solid skeleton and a liquid in its pores.
+//! Exact and converged solutions of one-dimensional saturated soil: a solid skeleton and a liquid in its
+//! pores.
 //!
-//! SI units, stresses and pore pressure positive in tension, `f64` throughout. The state belongs to a *material point of
-//! the solid*, asked for by its position at time 0; the column stands on its `origin`, and its depth is what is above.
+//! SI units, stresses and pore pressure positive in tension, `f64` throughout. The state belongs to
+//! a *material point of the solid*, asked for by its position at time 0; the column stands on its `origin`,
+//! and its depth is what is above.
 //!
-//! With the porosity $n$ (constant), the stretch $\lambda$ and $\gamma_w = \rho_w g$, per volume of liquid, of mixture
-//! and of storage,
+//! With the porosity $n$ (constant), the stretch $\lambda$ and $\gamma_w = \rho_w g$, per volume of liquid,
+//! of mixture and of storage,
 //!
 //! $$\begin{aligned}
 //! \rho_w \dot v_w &= \partial_x p - \frac{n \gamma_w}{k} (v_w - v_s) - \rho_w g, \\\\
@@ -12,9 +14,9 @@
 //! \frac{n}{K_w} \dot p &= (1-n) \partial_x v_s + n \partial_x v_w, \qquad k = k_0 \lambda^m,
 //! \end{aligned}$$
 //!
-//! and $\sigma' = E (\lambda - 1)$, $E (1 - 1/\lambda)$ or $E \ln \lambda$. Source: the velocity-velocity formulation of
-//! J. van Esch, D. Stolle and I. Jassim 2011 as used by E. Wobbes, M. Möller, V. Galavi and C. Vuik, *Taylor Least
-//! Squares reconstruction technique for material point methods*, report 18-2, Delft 2018.
+//! and $\sigma' = E (\lambda - 1)$, $E (1 - 1/\lambda)$ or $E \ln \lambda$. Source: the velocity-velocity
+//! formulation of J. van Esch, D. Stolle and I. Jassim 2011 as used by E. Wobbes, M. Möller, V. Galavi and C.
+//! Vuik, *Taylor Least Squares reconstruction technique for material point methods*, report 18-2, Delft 2018.
 #![doc = include_str!("../../../docs/formulas.html")]
 
 mod consolidation;
@@ -54,15 +56,15 @@ pub struct TwoPhaseState {
 pub trait TwoPhaseReference {
     /// Prepares evaluation at `time`, s, at least 0.
     ///
-    /// Calling it twice with the same time changes nothing. A closed form only remembers the time; a converged
-    /// solution marches its solver, and starts again from 0 where `time` lies before the last one.
+    /// Calling it twice with the same time changes nothing. A closed form only remembers the time; a
+    /// converged solution marches its solver, and starts again from 0 where `time` lies before the last one.
     ///
     /// # Errors
-    /// [`ReferenceError::InvalidTime`] where `time` is negative or not finite; what else can go wrong is said by each
-    /// solution.
+    /// [`ReferenceError::InvalidTime`] where `time` is negative or not finite; what else can go wrong is said
+    /// by each solution.
     fn advance(&mut self, time: f64) -> Result<(), ReferenceError>;
 
-    /// State, at the time of the last [`advance`](TwoPhaseReference::advance), of the material point of the solid that
-    /// was at `x0`, m, at time 0. Before the first `advance` the time is 0.
+    /// State, at the time of the last [`advance`](TwoPhaseReference::advance), of the material point of the
+    /// solid that was at `x0`, m, at time 0. Before the first `advance` the time is 0.
     fn at(&self, x0: f64) -> TwoPhaseState;
 }

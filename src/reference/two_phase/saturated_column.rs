@@ -3,10 +3,12 @@
 use super::super::check;
 use super::{ReferenceError, Soil, TwoPhaseReference, TwoPhaseState};
 
-/// A drained column at rest under its weight and a surface load, at small strain: exact, the same at all times.
+/// A drained column at rest under its weight and a surface load, at small strain: exact, the same at all
+/// times.
 ///
-/// The water table lies at the top, at the height $H$ above the fixed base. The liquid carries its own weight, the
-/// skeleton that of the grains under buoyancy and the load $q$; with the height $x$ above the base,
+/// The water table lies at the top, at the height $H$ above the fixed base. The liquid carries its own
+/// weight, the skeleton that of the grains under buoyancy and the load $q$; with the height $x$ above the
+/// base,
 ///
 /// $$p = -\rho_w g (H - x), \quad \sigma' = q - (1-n) (\rho_s - \rho_w) g (H - x), \quad
 ///     u_s = \frac1E \left(q x - (1-n) (\rho_s - \rho_w) g \left(H - \frac x2\right) x\right).$$
@@ -23,8 +25,8 @@ pub struct SaturatedColumn {
 }
 
 impl SaturatedColumn {
-    /// A column of `height`, m, and constrained `modulus`, Pa, under `load`, Pa (negative in compression, 0 for none),
-    /// with its base at 0.
+    /// A column of `height`, m, and constrained `modulus`, Pa, under `load`, Pa (negative in compression, 0
+    /// for none), with its base at 0.
     ///
     /// # Errors
     /// Where a parameter is not finite, or height or modulus not positive, or the soil makes no sense.

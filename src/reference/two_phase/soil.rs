@@ -17,8 +17,8 @@ pub struct Soil {
     pub permeability: f64,
     /// Exponent $m$ of $k = k_0 \lambda^m$; small strain does not see it.
     pub permeability_exponent: f64,
-    /// Magnitude $g$ of gravity, m/s2. It defines the permeability, through the unit weight of the liquid, also where
-    /// no weight acts.
+    /// Magnitude $g$ of gravity, m/s2. It defines the permeability, through the unit weight of the liquid,
+    /// also where no weight acts.
     pub gravity: f64,
 }
 
@@ -26,7 +26,8 @@ impl Soil {
     /// Passes a soil whose constants make sense.
     ///
     /// # Errors
-    /// Where a constant is not finite, the porosity not between 0 and 1, or another one but the exponent not positive.
+    /// Where a constant is not finite, the porosity not between 0 and 1, or another one but the exponent not
+    /// positive.
     pub fn check(self) -> Result<Self, ReferenceError> {
         if !(self.porosity > 0.0 && self.porosity < 1.0) {
             return Err(ReferenceError::InvalidPorosity { value: self.porosity });
@@ -60,14 +61,14 @@ impl Soil {
         self.liquid_bulk_modulus / self.porosity
     }
 
-    /// Coefficient of consolidation $c_v = k_0 / (\gamma_w (1/E + n/K_w))$, m2/s, with a skeleton of constrained
-    /// `modulus` $E$, Pa.
+    /// Coefficient of consolidation $c_v = k_0 / (\gamma_w (1/E + n/K_w))$, m2/s, with a skeleton of
+    /// constrained `modulus` $E$, Pa.
     pub fn consolidation_coefficient(&self, modulus: f64) -> f64 {
         self.permeability / (self.unit_weight() * (1.0 / modulus + 1.0 / self.locked_stiffness()))
     }
 
-    /// Part of a load that the pore pressure takes as long as no liquid leaves, $(K_w/n) / (E + K_w/n)$, with a skeleton
-    /// of constrained `modulus` $E$, Pa. The skeleton takes the rest.
+    /// Part of a load that the pore pressure takes as long as no liquid leaves, $(K_w/n) / (E + K_w/n)$, with
+    /// a skeleton of constrained `modulus` $E$, Pa. The skeleton takes the rest.
     pub fn undrained_pressure_ratio(&self, modulus: f64) -> f64 {
         1.0 / (1.0 + modulus / self.locked_stiffness())
     }

@@ -7,28 +7,30 @@ use super::{ReferenceError, Soil, TwoPhaseReference, TwoPhaseState};
 /// Consolidation of a layer at large strain: exact without inertia, for an incompressible liquid or, with
 /// [`with_compressible_liquid`](XieLeo::with_compressible_liquid), for the liquid of the soil.
 ///
-/// The problem is that of [`Consolidation`](super::Consolidation), with $\sigma' = E \ln \lambda$ and
-/// $k = k_0 \lambda^2$. At an impermeable base the total flux vanishes, so Darcy's law gives, with the material
+/// The problem is that of [`Consolidation`](super::Consolidation), with $\sigma' = E \ln \lambda$ and $k =
+/// k_0 \lambda^2$. At an impermeable base the total flux vanishes, so Darcy's law gives, with the material
 /// coordinate $X$,
 ///
 /// $$u_t = v_s = -n (v_w - v_s) = -\frac{k}{\gamma_w} \frac{p_X}{\lambda}
 ///     = \frac{k_0 \lambda}{\gamma_w} \frac{E \lambda_X}{\lambda} = c_v u_{XX}, \qquad c_v = \frac{k_0 E}{\gamma_w}:$$
 ///
-/// the heat equation, linear at any strain. With $S(\xi, \tau)$ of `Consolidation`, $\xi = X/H$, $\tau = c_v t/H^2$,
+/// the heat equation, linear at any strain. With $S(\xi, \tau)$ of `Consolidation`, $\xi = X/H$, $\tau = c_v
+/// t/H^2$,
 ///
-/// $$\lambda = 1 + \left(e^{q/E} - 1\right) (1 - S), \quad u = H \left(e^{q/E} - 1\right) \int_0^\xi (1 - S) d\xi, \quad
+/// $$\lambda = 1 + \left(e^{q/E} - 1\right) (1 - S), \quad u = H \left(e^{q/E} - 1\right) \int_0^\xi (1 - S)
+/// d\xi, \quad
 ///     v_w = -\frac{1-n}{n} v_s, \quad p = q - E \ln \lambda.$$
 ///
-/// A liquid of bulk modulus $K_w$ stores $\dot p = (K_w/(n \lambda)) ((1-n) v_s' + n v_w')$, with $p = q - E \ln \lambda$.
-/// The equation stays linear: the same solution with
+/// A liquid of bulk modulus $K_w$ stores $\dot p = (K_w/(n \lambda)) ((1-n) v_s' + n v_w')$, with $p = q - E
+/// \ln \lambda$. The equation stays linear: the same solution with
 ///
 /// $$c_v = \frac{k_0}{\gamma_w (1/E + n/K_w)}, \qquad v_w = v_s - \frac{k_0 E}{n \gamma_w} \lambda_X$$
 ///
 /// is that of the equations of the [module](super) without inertia (own derivation).
 ///
-/// Source: K. H. Xie and C. J. Leo, *Analytical solutions of one-dimensional large strain consolidation of saturated and
-/// homogeneous clays*, Comput. Geotech. 31 (2004) 301-314. Only the velocity of the liquid depends on the porosity,
-/// which is kept constant, as the method keeps it.
+/// Source: K. H. Xie and C. J. Leo, *Analytical solutions of one-dimensional large strain consolidation of
+/// saturated and homogeneous clays*, Comput. Geotech. 31 (2004) 301-314. Only the velocity of the liquid
+/// depends on the porosity, which is kept constant, as the method keeps it.
 #[doc = include_str!("../../../docs/formulas.html")]
 #[derive(Clone, Debug, PartialEq)]
 pub struct XieLeo {
@@ -42,13 +44,13 @@ pub struct XieLeo {
 }
 
 impl XieLeo {
-    /// A layer of initial `height`, m, and `modulus` $E$, Pa, under `load`, Pa (negative in compression), with its base
-    /// at 0. Of the soil, the bulk modulus does not matter, and the densities only by the unit
+    /// A layer of initial `height`, m, and `modulus` $E$, Pa, under `load`, Pa (negative in compression),
+    /// with its base at 0. Of the soil, the bulk modulus does not matter, and the densities only by the unit
     /// weight of the liquid.
     ///
     /// # Errors
-    /// Where a parameter is not finite, or height or modulus not positive, the soil makes no sense or its permeability
-    /// does not follow $k_0 \lambda^2$.
+    /// Where a parameter is not finite, or height or modulus not positive, the soil makes no sense or its
+    /// permeability does not follow $k_0 \lambda^2$.
     pub fn new(height: f64, modulus: f64, load: f64, soil: Soil) -> Result<Self, ReferenceError> {
         let required = 2.0;
         if soil.permeability_exponent != required {
@@ -172,8 +174,8 @@ mod tests {
         }
     }
 
-    /// Expected values from a 30-digit evaluation of the series: u, v_s, v_w, sigma', p for the benchmark of report 18-2
-    /// with the permeability that its settlement needs. The first line is that settlement.
+    /// Expected values from a 30-digit evaluation of the series: u, v_s, v_w, sigma', p for the benchmark of
+    /// report 18-2 with the permeability that its settlement needs. The first line is that settlement.
     #[test]
     #[rustfmt::skip]
     fn reproduces_reference_digits() {
@@ -197,7 +199,8 @@ mod tests {
         }
     }
 
-    /// From the same evaluation. The settlement is the one that the converged method is to be measured against.
+    /// From the same evaluation. The settlement is the one that the converged method is to be measured
+    /// against.
     #[test]
     #[rustfmt::skip]
     fn compressible_liquid_has_its_reference_digits() {
@@ -213,7 +216,8 @@ mod tests {
         }
     }
 
-    /// The permeability that report 18-2 prints settles by a sixth of what it prints; from the same evaluation.
+    /// The permeability that report 18-2 prints settles by a sixth of what it prints; from the same
+    /// evaluation.
     #[test]
     fn printed_permeability_settles_less() {
         let layer = XieLeo::new(1.0, 1e6, -5e5, report_soil(1e-5, 3e7)).unwrap();

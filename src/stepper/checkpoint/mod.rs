@@ -2,17 +2,21 @@
 //!
 //! Saved is what a step finds and does not make anew:
 //!
-//! * the particles, in the order in which they are in memory (sums depend on it), and which of them bear surfaces;
-//! * their cells: a particle at an edge stays in the cell that it came from, so that its position does not tell;
+//! * the particles, in the order in which they are in memory (sums depend on it), and which of them bear
+//!   surfaces;
+//! * their cells: a particle at an edge stays in the cell that it came from, so that its position does not
+//!   tell;
 //! * the window of cells that have numbers, and whether it is to be laid anew ([`super::window`]);
 //! * their first numbers, and how many have changed their cells since they were put in order;
 //! * how sums are cut into spans, which the cells of earlier steps decide ([`spans`]);
 //! * time, steps, diagnostics, the momentum after the last step.
 //!
-//! Not saved is what follows from the [`Setup`](super::Setup) (grid, law, phase, DOFs of the faces) or is made anew before it is
-//! used: basis and reconstruction take in where the particles are at the start of a step, as the lists of the cells and the cuts
-//! of the surfaces; impulses of walls are found from nothing in each step; mass, forces, velocities, matrices and drag of the DOFs and the part of a cell that a wave crosses are summed
-//! from the particles. Body forces ([`Stepper::set_body_forces`]) are loads, which the caller sets again.
+//! Not saved is what follows from the [`Setup`](super::Setup) (grid, law, phase, DOFs of the faces) or is
+//! made anew before it is used: basis and reconstruction take in where the particles are at the start of a
+//! step, as the lists of the cells and the cuts of the surfaces; impulses of walls are found from nothing in
+//! each step; mass, forces, velocities, matrices and drag of the DOFs and the part of a cell that a wave
+//! crosses are summed from the particles. Body forces ([`Stepper::set_body_forces`]) are loads, which the
+//! caller sets again.
 
 mod codec;
 mod particles;
@@ -43,8 +47,8 @@ where
     P: Phase<T, D>,
     P::Particle: Record<T>,
 {
-    /// Writes all that [`Stepper::restore`] needs to go on as this stepper will, to the bit; nothing is held twice in memory.
-    /// The bytes bear no mark and no checksum of their own.
+    /// Writes all that [`Stepper::restore`] needs to go on as this stepper will, to the bit; nothing is held
+    /// twice in memory. The bytes bear no mark and no checksum of their own.
     ///
     /// # Errors
     /// Those of `out`, and [`io::ErrorKind::Unsupported`] for scalars other than `f64` and `f32`.
@@ -68,12 +72,12 @@ where
         self.spans.save(&mut out)
     }
 
-    /// Takes over what [`Stepper::save`] wrote, of a stepper with the same setup. DOF velocities are those of the next step once
-    /// it is taken, and body forces must be set again.
+    /// Takes over what [`Stepper::save`] wrote, of a stepper with the same setup. DOF velocities are those of
+    /// the next step once it is taken, and body forces must be set again.
     ///
     /// # Errors
-    /// If it cannot be read, comes from a stepper of another kind or makes no sense. The state is then neither the old nor the
-    /// new one: such a stepper is of no further use.
+    /// If it cannot be read, comes from a stepper of another kind or makes no sense. The state is then
+    /// neither the old nor the new one: such a stepper is of no further use.
     pub fn restore(&mut self, from: &mut dyn Read) -> Result<(), RestoreError> {
         let mut from = In::new::<T>(from)?;
         for (what, expected) in self.shape() {

@@ -1,9 +1,9 @@
 //! How sums over particles and cells are cut into spans.
 //!
-//! Where a sum is cut decides its last bits. The cuts are made anew when particles have crossed, from the cells of that very
-//! step, and stay until the next crossing; so they are saved, as the number of shortest spans that each span is made of. The
-//! windows themselves are not: what a wider one holds more is zeros. The capacities are, so that a run reports the same
-//! memory.
+//! Where a sum is cut decides its last bits. The cuts are made anew when particles have crossed, from the
+//! cells of that very step, and stay until the next crossing; so they are saved, as the number of shortest
+//! spans that each span is made of. The windows themselves are not: what a wider one holds more is zeros. The
+//! capacities are, so that a run reports the same memory.
 
 use std::io;
 

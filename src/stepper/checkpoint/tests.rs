@@ -1,4 +1,5 @@
-//! Goal: whenever a stepper was saved, the restored one takes its steps to the bit; what is no such state is refused.
+//! Goal: whenever a stepper was saved, the restored one takes its steps to the bit; what is no such state is
+//! refused.
 
 use std::f64::consts::PI;
 use std::io;
@@ -81,8 +82,8 @@ fn plane<R: Reconstruction<f64, 2>>(
     setup(grid.unwrap(), (BSpline::<2>, reconstruction, law), particles)
 }
 
-/// Pushes rows of particles over the edge, stops them, lets them rest, and takes them back: some steps have crossings and others
-/// none, and after the way back spans are as wide as they need not be.
+/// Pushes rows of particles over the edge, stops them, lets them rest, and takes them back: some steps have
+/// crossings and others none, and after the way back spans are as wide as they need not be.
 fn push<const D: usize, B, R, L>(stepper: &mut Stepper<f64, D, B, R, L, OnePhase>, step: usize)
 where
     B: BasisFamily<f64, D>,
@@ -115,8 +116,8 @@ where
     bytes
 }
 
-/// Saves after every step; a fresh stepper that is given the state takes the next two steps. The state is all there is, so
-/// that states alike in every byte mean steppers alike.
+/// Saves after every step; a fresh stepper that is given the state takes the next two steps. The state is all
+/// there is, so that states alike in every byte mean steppers alike.
 fn goes_on_as_if_nothing_had_happened<const D: usize, B, R, L>(
     fresh: &Stepper<f64, D, B, R, L, OnePhase>,
     steps: usize,
@@ -160,8 +161,8 @@ fn the_plane_goes_on_from_any_step_though_its_spans_change() {
         wide += usize::from(!spans.stale && narrow && spans.lengths[0] > PARTICLES);
         orders.push(stepper.numbers().map(<[u32]>::to_vec));
     });
-    // Cut as no one would who knew the cells alone, and put in order again on the way: else the test would show nothing of
-    // what it is for.
+    // Cut as no one would who knew the cells alone, and put in order again on the way: else the test would
+    // show nothing of what it is for.
     orders.dedup();
     assert!(wide > 0 && orders.len() > 1, "{wide} {}", orders.len());
 }
@@ -217,7 +218,8 @@ fn a_state_that_ends_early_or_is_anothers_is_refused() {
     assert_eq!(message, "the state has 144 cells; expected 4096");
 }
 
-/// Also where a checksum would have told: whatever the bytes are, nothing panics, in restoring or in steps from there.
+/// Also where a checksum would have told: whatever the bytes are, nothing panics, in restoring or in steps
+/// from there.
 #[test]
 fn a_changed_state_is_refused_or_stepped_from_without_panic() {
     let mut stepper = small();

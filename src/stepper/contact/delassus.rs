@@ -84,8 +84,8 @@ impl<T: Scalar, const D: usize> Delassus<T, D> {
         }
     }
 
-    /// Makes each diagonal at least the sum of what couples to it. An operator that is not quite symmetric, or was asked for at
-    /// some DOFs only, may otherwise have no solution that sweeps find.
+    /// Makes each diagonal at least the sum of what couples to it. An operator that is not quite symmetric,
+    /// or was asked for at some DOFs only, may otherwise have no solution that sweeps find.
     pub(super) fn dominate(&mut self, dofs: &WallDofs<T, D>) {
         for (place, own) in self.diagonal.iter_mut().enumerate() {
             let row = dofs.row(place);

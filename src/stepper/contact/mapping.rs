@@ -1,8 +1,8 @@
 //! The impulses of walls under any other mapping: fits of densities, consistent masses.
 //!
-//! Their `W` couples DOFs at any distance, but falls off fast with it. Impulses at DOFs so far apart that their responses hardly
-//! meet give all columns within [`reach`] in a few mappings; what lies beyond, and where responses meet, is made good by
-//! correction with the mapping itself, which is linear in the impulses.
+//! Their `W` couples DOFs at any distance, but falls off fast with it. Impulses at DOFs so far apart that
+//! their responses hardly meet give all columns within [`reach`] in a few mappings; what lies beyond, and
+//! where responses meet, is made good by correction with the mapping itself, which is linear in the impulses.
 
 use nalgebra::SVector;
 
@@ -24,17 +24,18 @@ use crate::stepper::{Forcing, Stepper};
 const TOLERANCE: f64 = 1e-9;
 /// Corrections after which the impulses are taken as they are.
 const MOST_CORRECTIONS: usize = 80;
-/// By so much the operator is made larger when impulses were too large: one that is larger than the mapping's own gives
-/// smaller steps, which never overshoot.
+/// By so much the operator is made larger when impulses were too large: one that is larger than the mapping's
+/// own gives smaller steps, which never overshoot.
 const LARGER: f64 = 2.0;
 /// By so much a correction may be larger than the one before.
 const GROWTH: f64 = 2.0;
-/// Share of the energy that impulses take by which it may rise again: bounds of friction move with what presses.
+/// Share of the energy that impulses take by which it may rise again: bounds of friction move with what
+/// presses.
 const RISE: f64 = 1e-3;
 
-/// How far apart along each axis two DOFs may be whose coupling is asked for. The response to an impulse falls by
-/// 0.27 (linear) to 0.54 (cubic) from DOF to DOF of a consistent mass; in space, where their number is squared, fewer are
-/// asked for and more corrections made.
+/// How far apart along each axis two DOFs may be whose coupling is asked for. The response to an impulse
+/// falls by 0.27 (linear) to 0.54 (cubic) from DOF to DOF of a consistent mass; in space, where their number
+/// is squared, fewer are asked for and more corrections made.
 pub(super) const fn reach<const D: usize>() -> usize {
     match D {
         1 | 2 => 3,
@@ -121,7 +122,8 @@ where
         delassus.complete(dofs);
     }
 
-    /// Changes of velocity of particles and DOFs by the impulses laid at the DOFs; the latter's take the place of the velocities.
+    /// Changes of velocity of particles and DOFs by the impulses laid at the DOFs; the latter's take the
+    /// place of the velocities.
     fn respond(&mut self, rest: &Forcing<T, D>) {
         let walls = Walls::of_solid(&self.face_dofs, rest);
         let force = &mut self.dofs.force;
@@ -165,8 +167,8 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
         self.free.clone_from(&self.velocity);
     }
 
-    /// Change of the kinetic energy by the impulses so far, `R . (v* + v) / 2` relative to the walls, where `responses` are added to
-    /// the velocities reached.
+    /// Change of the kinetic energy by the impulses so far, `R . (v* + v) / 2` relative to the walls, where
+    /// `responses` are added to the velocities reached.
     fn energy_with(&self, responses: &[SVector<T, D>]) -> T {
         let half = T::one() / T::lit(2.0);
         self.dofs.contacts.iter().fold(T::zero(), |sum, contact| {
@@ -186,7 +188,8 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
         }
     }
 
-    /// Greatest change of velocity (m/s) at its own DOF by which a contact's impulse was corrected; no number if it is none.
+    /// Greatest change of velocity (m/s) at its own DOF by which a contact's impulse was corrected; no number
+    /// if it is none.
     fn correction(&self) -> T {
         let mut most = T::zero();
         for (now, before) in self.dofs.contacts.iter().zip(&self.tried) {
@@ -224,7 +227,8 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
         }
     }
 
-    /// Lays an impulse of one along every axis at each closed contact of a colour; returns whether there is any.
+    /// Lays an impulse of one along every axis at each closed contact of a colour; returns whether there is
+    /// any.
     fn lay_unit_impulses(&mut self, colour: &[usize; D], shape: &[usize; D], stride: usize) -> bool {
         self.gain.fill(SVector::zeros());
         let mut any = false;

@@ -1,23 +1,27 @@
-//! Contact with walls that let go and rub: Signorini's conditions and Coulomb's friction at the DOFs on a face of the grid.
+//! Contact with walls that let go and rub: Signorini's conditions and Coulomb's friction at the DOFs on a
+//! face of the grid.
 //!
-//! A step maps particle velocities to the DOFs by `v = P v_p`, for particle sums `P = N Phi^T M` with the particle masses `M`, the
-//! shape functions `Phi` and the inverse mass `N` of the DOFs. The wall acts by *one* impulse `R` at its DOFs, which changes
-//! the particles by `Phi N R` and so the mapped velocities by `W R`, `W = P Phi N`. It is solved for such that the velocity which
-//! then moves and strains the particles obeys the contact law, and nothing is corrected after that.
+//! A step maps particle velocities to the DOFs by `v = P v_p`, for particle sums `P = N Phi^T M` with the
+//! particle masses `M`, the shape functions `Phi` and the inverse mass `N` of the DOFs. The wall acts
+//! by *one* impulse `R` at its DOFs, which changes the particles by `Phi N R` and so the mapped velocities by
+//! `W R`, `W = P Phi N`. It is solved for such that the velocity which then moves and strains the particles
+//! obeys the contact law, and nothing is corrected after that.
 //!
-//! For particle sums, and for the consistent mass of the particles, `Phi N = M^-1 P^T`, so that the particles' kinetic energy
-//! changes by `R . v - R . W R / 2` with `v` the velocity after it. There `R_n v_n = 0`, `R_t . v_t <= 0`, and `W` has no
-//! negative eigenvalue: a wall at rest never does positive work, whatever the step, the basis and the motion, and since strains
-//! come from that same `v` no strain energy passes it either. (Asked twice, before and after the particles' update, a wall may
-//! hold a DOF in the first pass and let it go in the second; it then does the work of the force that it cancelled.)
+//! For particle sums, and for the consistent mass of the particles, `Phi N = M^-1 P^T`, so that the
+//! particles' kinetic energy changes by `R . v - R . W R / 2` with `v` the velocity after it. There
+//! `R_n v_n = 0`, `R_t . v_t <= 0`, and `W` has no negative eigenvalue: a wall at rest never does positive
+//! work, whatever the step, the basis and the motion, and since strains come from that same `v` no strain
+//! energy passes it either. (Asked twice, before and after the particles' update, a wall may hold a DOF in
+//! the first pass and let it go in the second; it then does the work of the force that it cancelled.)
 //!
-//! A DOF is in contact where a particle that it sees has its surface within [`CLOSED`] of a cell from the wall. Otherwise
-//! material would stop as soon as it enters the cell at the wall.
+//! A DOF is in contact where a particle that it sees has its surface within [`CLOSED`] of a cell from the
+//! wall. Otherwise material would stop as soon as it enters the cell at the wall.
 //!
-//! Particle sums give `W = N S N`, `S_ij = sum_p m_p phi_i phi_j` ([`sums`]). Any other mapping (fits of densities, a
-//! consistent mass) is asked for its own `W` by impulses at DOFs far enough apart, and the solution is corrected with the mapping
-//! itself until the law holds ([`mapping`]). With published TLS, whose forces are not adjoint to its mapping, the proof above
-//! does not hold, although the law is obeyed as exactly.
+//! Particle sums give `W = N S N`, `S_ij = sum_p m_p phi_i phi_j` ([`sums`]). Any other mapping (fits of
+//! densities, a consistent mass) is asked for its own `W` by impulses at DOFs far enough apart, and the
+//! solution is corrected with the mapping itself until the law holds ([`mapping`]). With published TLS, whose
+//! forces are not adjoint to its mapping, the proof above does not hold, although the law is obeyed as
+//! exactly.
 
 mod delassus;
 mod mapping;
@@ -51,7 +55,8 @@ pub(super) struct WallContact<T, const D: usize> {
     dofs: WallDofs<T, D>,
     delassus: Delassus<T, D>,
     subspace: Subspace<T, D>,
-    /// Of each particle, in the order in which they were given, its size along each axis over the root of its volume.
+    /// Of each particle, in the order in which they were given, its size along each axis over the root of its
+    /// volume.
     shapes: Vec<SVector<T, D>>,
     /// Particles that see a DOF on a wall.
     near: Vec<u32>,
@@ -63,7 +68,8 @@ pub(super) struct WallContact<T, const D: usize> {
     impulse: Vec<SVector<T, D>>,
     /// Of all DOFs: what is to be added to them.
     gain: Vec<SVector<T, D>>,
-    /// Of all DOFs and particles, where the mapping is no particle sum: velocities so far, and changes of velocity.
+    /// Of all DOFs and particles, where the mapping is no particle sum: velocities so far, and changes of
+    /// velocity.
     reached: Vec<SVector<T, D>>,
     kicks: Vec<SVector<T, D>>,
     /// Of the DOFs on walls: velocities without any impulse; and the contacts before a correction.
@@ -194,7 +200,8 @@ where
     L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
-    /// Lets the walls act on particles and DOFs, whose velocities are those that the step would have without them.
+    /// Lets the walls act on particles and DOFs, whose velocities are those that the step would have without
+    /// them.
     pub(super) fn apply_wall_contact(&mut self, forcing: &Forcing<T, D>) {
         if Wall::all(forcing).next().is_none() {
             return;
@@ -259,7 +266,8 @@ where
         }
     }
 
-    /// Finds the particles at the walls, sums their masses in pairs of DOFs, and sees which contacts are closed.
+    /// Finds the particles at the walls, sums their masses in pairs of DOFs, and sees which contacts are
+    /// closed.
     fn detect_contacts(&mut self, forcing: &Forcing<T, D>) {
         let WallContact {
             dofs,

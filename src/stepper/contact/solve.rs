@@ -1,12 +1,13 @@
-//! The contact problem: Signorini's conditions along the normal and Coulomb's law along the wall, at every DOF at once.
+//! The contact problem: Signorini's conditions along the normal and Coulomb's law along the wall, at every
+//! DOF at once.
 //!
-//! With `v = v* + W R` the impulses `R` are those with `R_n >= 0`, `v_n >= 0`, `R_n v_n = 0`, and `|R_t| <= mu R_n` where `R_t`
-//! opposes the sliding wherever it reaches that bound. Projected Gauss-Seidel finds them: normal impulses first, then
-//! tangential ones with their bounds frozen. Along one flat wall `W` is a number times the identity for each pair of DOFs,
-//! so that neither changes the other, and both problems are convex: a solution cut short only dissipates. Between
-//! sweeps conjugate gradients solve for the contacts that are free to change ([`super::subspace`]). Where two walls
-//! meet, the normal of one is a tangent of the other; there both are done in turns until neither moves, by sweeps
-//! alone.
+//! With `v = v* + W R` the impulses `R` are those with `R_n >= 0`, `v_n >= 0`, `R_n v_n = 0`, and
+//! `|R_t| <= mu R_n` where `R_t` opposes the sliding wherever it reaches that bound. Projected Gauss-Seidel
+//! finds them: normal impulses first, then tangential ones with their bounds frozen. Along one flat wall `W`
+//! is a number times the identity for each pair of DOFs, so that neither changes the other, and both problems
+//! are convex: a solution cut short only dissipates. Between sweeps conjugate gradients solve for the
+//! contacts that are free to change ([`super::subspace`]). Where two walls meet, the normal of one is a
+//! tangent of the other; there both are done in turns until neither moves, by sweeps alone.
 
 use nalgebra::SVector;
 
@@ -59,7 +60,8 @@ impl<T: Scalar, const D: usize> Problem<'_, T, D> {
             changed: false,
             settled: true,
         };
-        // Each kind has its own: friction must not end because what presses has not settled to the last digit.
+        // Each kind has its own: friction must not end because what presses has not settled to the last
+        // digit.
         let mut left = [MOST_SWEEPS; 2];
         let meet = self.walls_meet();
         if meet {
@@ -90,8 +92,8 @@ impl<T: Scalar, const D: usize> Problem<'_, T, D> {
         axes.any(|axis| Some(axis) != first)
     }
 
-    /// Sweeps over the contacts until no velocity changes by more than `least`, or none of the sweeps is `left`; returns whether
-    /// the first one did change any.
+    /// Sweeps over the contacts until no velocity changes by more than `least`, or none of the sweeps is
+    /// `left`; returns whether the first one did change any.
     fn sweeps(&mut self, least: T, left: &mut usize, kind: Kind) -> bool {
         let update = match kind {
             Kind::Normal => Self::press,
@@ -117,7 +119,8 @@ impl<T: Scalar, const D: usize> Problem<'_, T, D> {
         moved
     }
 
-    /// Solves for the contacts that the last sweep left free, and goes as far towards that as all bounds allow.
+    /// Solves for the contacts that the last sweep left free, and goes as far towards that as all bounds
+    /// allow.
     fn iterate(&mut self, least: T, left: &mut usize, kind: Kind) {
         let Some(subspace) = self.subspace.as_deref_mut() else {
             return;

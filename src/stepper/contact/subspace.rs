@@ -1,9 +1,10 @@
 //! Conjugate gradients over the contacts that are free to change, between sweeps.
 //!
-//! Where particles hardly resist an alternating motion of the DOFs at a wall, the operator is next to singular, and what
-//! sweeps leave falls like one over their number. Once sweeps have found which contacts press (or stick), the velocities of
-//! those are a linear problem, which conjugate gradients solve in as many steps as it has distinct eigenvalues. The step is
-//! cut where the first contact would pull (or slip), so the energy falls in it as it does in a sweep.
+//! Where particles hardly resist an alternating motion of the DOFs at a wall, the operator is next to
+//! singular, and what sweeps leave falls like one over their number. Once sweeps have found which contacts
+//! press (or stick), the velocities of those are a linear problem, which conjugate gradients solve in as many
+//! steps as it has distinct eigenvalues. The step is cut where the first contact would pull (or slip), so the
+//! energy falls in it as it does in a sweep.
 
 use nalgebra::SVector;
 
@@ -11,7 +12,8 @@ use super::delassus::Delassus;
 use super::wall::WallDofs;
 use crate::scalar::Scalar;
 
-/// Vectors over the DOFs on walls, by component; components of contacts that are not free are zero in all but the products.
+/// Vectors over the DOFs on walls, by component; components of contacts that are not free are zero in all but
+/// the products.
 #[derive(Clone, Debug)]
 pub(super) struct Subspace<T, const D: usize> {
     /// One for components that are free, zero for others.
@@ -74,8 +76,8 @@ impl<T: Scalar, const D: usize> Subspace<T, D> {
         size_of::<SVector<T, D>>() * vectors.map(Vec::capacity).iter().sum::<usize>()
     }
 
-    /// Finds the step after which the free components of `velocity`, relative to walls that move with `wall`, are at most
-    /// `least` (m/s), as far as `left` iterations lead, of which it takes those that it needs.
+    /// Finds the step after which the free components of `velocity`, relative to walls that move with `wall`,
+    /// are at most `least` (m/s), as far as `left` iterations lead, of which it takes those that it needs.
     pub(super) fn solve(
         &mut self,
         (dofs, delassus): (&WallDofs<T, D>, &Delassus<T, D>),

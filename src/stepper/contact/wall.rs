@@ -100,7 +100,8 @@ impl<T: Scalar, const D: usize> Contact<T, D> {
     }
 }
 
-/// The DOFs of all walls with their contacts, and for each DOF those whose velocity an impulse at it may change.
+/// The DOFs of all walls with their contacts, and for each DOF those whose velocity an impulse at it may
+/// change.
 #[derive(Clone, Debug)]
 pub(super) struct WallDofs<T, const D: usize> {
     faces: Vec<Face>,

@@ -34,7 +34,8 @@ struct Body<const D: usize, S> {
 }
 
 impl<const D: usize, S: Copy + Default + PartialEq + std::fmt::Debug> Body<D, S> {
-    /// Cells of one to nine particles in no order, more than a block of them, and DOFs with velocities up to 1 m/s.
+    /// Cells of one to nine particles in no order, more than a block of them, and DOFs with velocities up to
+    /// 1 m/s.
     fn new(basis: &impl BasisFamily<f64, D>) -> Self {
         let n = [40, 6, 3][D - 1];
         let grid = Grid::new(SVector::zeros(), SVector::repeat(n as f64), [n; D]).unwrap();

@@ -20,8 +20,8 @@ where
 {
     /// Turns the forces of both phases into accelerations; a DOF that no particle reaches has none.
     ///
-    /// Implicit drag takes the velocities at the end of the step, `v + dt a`: two equations in two unknowns a DOF, here solved
-    /// without products of masses, which would underflow in nearly empty cells.
+    /// Implicit drag takes the velocities at the end of the step, `v + dt a`: two equations in two unknowns a
+    /// DOF, here solved without products of masses, which would underflow in nearly empty cells.
     pub(in super::super) fn accelerate_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
         if R::PARTICLE_MATRIX {
             return self.solve_both(dt, forcing);
@@ -54,8 +54,8 @@ where
         self.seal_accelerations(dt);
     }
 
-    /// Told accelerations at held DOFs. Where the liquid passes a held face it still feels the solid's drag, now that of a
-    /// solid that moves as told.
+    /// Told accelerations at held DOFs. Where the liquid passes a held face it still feels the solid's drag,
+    /// now that of a solid that moves as told.
     fn hold_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
         let share = self.share_of_drag(dt);
         let (solid, liquid, drag) = (&mut self.dofs.force, &mut self.liquid.force, &self.drag);

@@ -5,7 +5,8 @@ use nalgebra::Matrix2;
 use super::super::{CriticalStep, Mechanism};
 use crate::scalar::Scalar;
 
-/// Halvings of the interval that holds the critical step: enough for a drag limit 1e12 times below the wave's.
+/// Halvings of the interval that holds the critical step: enough for a drag limit 1e12 times below the
+/// wave's.
 const HALVINGS: usize = 100;
 
 /// Material at one place, as the stability of a step feels it; rows and columns are liquid and solid.
@@ -26,14 +27,17 @@ pub(in super::super) struct Coupled<T: Scalar> {
 }
 
 impl<T: Scalar> Coupled<T> {
-    /// Largest step (s) at which nothing grows, where `geometry` (1/m2) is the largest eigenvalue of the scheme's mass inverse
-    /// times stiffness for unit density and modulus (`4 / h^2` for linear functions and lumped masses).
+    /// Largest step (s) at which nothing grows, where `geometry` (1/m2) is the largest eigenvalue of the
+    /// scheme's mass inverse times stiffness for unit density and modulus (`4 / h^2` for linear functions and
+    /// lumped masses).
     ///
-    /// Euler-Cromer changes its behaviour where an amplification factor reaches -1: at the first step that makes
+    /// Euler-Cromer changes its behaviour where an amplification factor reaches -1: at the first step that
+    /// makes
     ///
     /// `4 M - 2 dt D - dt^2 g C` (explicit drag) or `4 M + 2 dt D - dt^2 g C` (implicit drag)
     ///
-    /// no longer positive definite. Along every direction this is positive up to one root, so bisection finds the least.
+    /// no longer positive definite. Along every direction this is positive up to one root, so bisection finds
+    /// the least.
     pub(in super::super) fn critical_step(&self, geometry: T) -> Option<CriticalStep<T>> {
         let with_drag = self.largest_step(geometry, self.drag)?;
         let wave = self.largest_step(geometry, T::zero())?;
@@ -52,9 +56,9 @@ impl<T: Scalar> Coupled<T> {
 
     /// A step of at most [`Coupled::critical_step`], without a search.
     ///
-    /// With `mu` the largest eigenvalue of `M^-1 C` and `r` that of `M^-1 D`, `4 M - 2 dt D - dt^2 g C` is positive definite where
-    /// `2 dt r + dt^2 g mu <= 4`. Drag at the end of the step only adds to it. Exact where one of both limits alone; where they
-    /// are equal 0.62 of it at least.
+    /// With `mu` the largest eigenvalue of `M^-1 C` and `r` that of `M^-1 D`, `4 M - 2 dt D - dt^2 g C` is
+    /// positive definite where `2 dt r + dt^2 g mu <= 4`. Drag at the end of the step only adds to it. Exact
+    /// where one of both limits alone; where they are equal 0.62 of it at least.
     pub(in super::super) fn stable_step(&self, geometry: T) -> Option<CriticalStep<T>> {
         let (two, four) = (T::lit(2.0), T::lit(4.0));
         let [liquid, solid] = self.mass;
@@ -122,8 +126,8 @@ impl<T: Scalar> Coupled<T> {
 mod tests {
     use super::*;
 
-    /// Soils from gravel to clay, grids from fine to coarse: never above the search's result, which bisects the determinant itself,
-    /// and no less than the golden section of it.
+    /// Soils from gravel to clay, grids from fine to coarse: never above the search's result, which bisects
+    /// the determinant itself, and no less than the golden section of it.
     #[test]
     fn the_closed_form_stays_below_the_search() {
         for exponent in 0..12 {

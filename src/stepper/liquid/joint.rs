@@ -2,15 +2,16 @@
 //!
 #![doc = include_str!("../../../docs/formulas.html")]
 //!
-//! With $M_s$, $\bar M$ the matrices of the solid's and the liquid's mass and $D = n\sum_p d_p\phi\phi^T$ that of the drag, the balances
-//! of the whole and, times the porosity, of the liquid are
+//! With $M_s$, $\bar M$ the matrices of the solid's and the liquid's mass and $D = n\sum_p d_p\phi\phi^T$
+//! that of the drag, the balances of the whole and, times the porosity, of the liquid are
 //!
 //! $$(M_s + \bar M) a_s + \bar M r = f + (M_s + \bar M) b,$$
 //! $$\bar M a_s + (\bar M + \Delta t D) r = n f_w + \bar M b - D (v_w - v_s),$$
 //!
-//! $r = a_w - a_s$ the change of the slip ($\Delta t D$ on the left only where the drag is felt at the step's end). The matrix is
-//! symmetric and positive, and since the drag stands beside the slip alone, the momentum of the whole keeps all its digits
-//! however strong it is: in $a_s$ and $a_w$ it would be a difference of numbers the size of the drag.
+//! $r = a_w - a_s$ the change of the slip ($\Delta t D$ on the left only where the drag is felt at the step's
+//! end). The matrix is symmetric and positive, and since the drag stands beside the slip alone, the momentum
+//! of the whole keeps all its digits however strong it is: in $a_s$ and $a_w$ it would be a difference of
+//! numbers the size of the drag.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -95,7 +96,8 @@ impl<T: Scalar, const D: usize> Joint<T, D> {
     /// Takes in the matrices of both masses; `dt` is zero where the drag of the step's start is felt.
     pub(super) fn assemble(&mut self, solid: &Banded<T>, liquid: &Banded<T>, dt: T) {
         let drag = self.drag.band();
-        // The slip in units in which its part of the matrix is as large as the others, so that no pivot seems to vanish.
+        // The slip in units in which its part of the matrix is as large as the others, so that no pivot seems
+        // to vanish.
         let mass = liquid.total();
         self.slip_scale = if mass > T::zero() {
             (mass / (mass + drag.total() * dt)).sqrt()
@@ -181,7 +183,8 @@ mod tests {
         }
     }
 
-    /// Both equations with every entry, for drags from none to 1e12 masses; the sum of the first is the momentum of the whole.
+    /// Both equations with every entry, for drags from none to 1e12 masses; the sum of the first is the
+    /// momentum of the whole.
     #[test]
     fn the_momentum_of_the_whole_keeps_its_digits_under_any_drag() {
         let grid = Grid::new(vector![0.0], vector![4.0], [4]).unwrap();

@@ -17,8 +17,8 @@ where
     L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
-    /// Effective stress and pressure after the forces are assembled from them, the velocities of both phases, each weighted with
-    /// its masses, after their update and before they are mapped.
+    /// Effective stress and pressure after the forces are assembled from them, the velocities of both phases,
+    /// each weighted with its masses, after their update and before they are mapped.
     pub(in super::super) fn relax_both(&mut self, dt: T) {
         self.measure_courant_numbers(dt);
         let (crossed, phase) = (&self.crossed[..], &self.phase);

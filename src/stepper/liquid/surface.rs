@@ -78,10 +78,11 @@ where
 {
     /// The load of one surface, as an even state of the whole body.
     ///
-    /// With every surface of the bodies known, `integral(t phi_i) - integral(sigma grad phi_i)` does not change if the same
-    /// even stress is taken from `sigma` and, times the normal, from the loads `t`. Taking the load of a surface itself leaves
-    /// nothing to integrate where the body is in equilibrium with it, so that particles as quadrature points are exact there;
-    /// a point load against their sum is not. Beyond one dimension no even state fits a load, and none is taken.
+    /// With every surface of the bodies known, `integral(t phi_i) - integral(sigma grad phi_i)` does not
+    /// change if the same even stress is taken from `sigma` and, times the normal, from the loads `t`. Taking
+    /// the load of a surface itself leaves nothing to integrate where the body is in equilibrium with it, so
+    /// that particles as quadrature points are exact there; a point load against their sum is not. Beyond one
+    /// dimension no even state fits a load, and none is taken.
     pub(in super::super) fn uniform_load(&self, forcing: &Forcing<T, D>) -> UniformLoad<T> {
         let mut even = UniformLoad::none();
         if D > 1 || !P::FLOWS {
@@ -101,7 +102,8 @@ where
         even
     }
 
-    /// What loads the surfaces besides the even part: tractions on the whole, pressures on the liquid where it passes.
+    /// What loads the surfaces besides the even part: tractions on the whole, pressures on the liquid where
+    /// it passes.
     pub(in super::super) fn add_surface_loads(&mut self, even: &UniformLoad<T>, forcing: &Forcing<T, D>) {
         for k in 0..self.surface.len() {
             let point = &self.surface[k];

@@ -17,8 +17,8 @@ where
     L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
-    /// DOF velocities of both phases at the step's start. The masses of the mapping serve again after the update: nothing has
-    /// moved by then.
+    /// DOF velocities of both phases at the step's start. The masses of the mapping serve again after the
+    /// update: nothing has moved by then.
     pub(in super::super) fn map_both_before(&mut self, dt: T, forcing: &Forcing<T, D>) {
         if !R::AMOUNTS_AT_PARTICLES {
             self.fit_momenta(true);

@@ -10,8 +10,8 @@ use crate::scalar::Scalar;
 use crate::testing::failure::{Failure, Place, Property};
 use crate::testing::worst::Worst;
 
-/// Step of the finite differences in cell sizes: exact in binary, small against the cell, and large enough for
-/// round-off to leave half the digits even in `f32`.
+/// Step of the finite differences in cell sizes: exact in binary, small against the cell, and large enough
+/// for round-off to leave half the digits even in `f32`.
 const STEP: f64 = 1.0 / 128.0;
 
 pub(super) fn check<T: Scalar, const D: usize, B: BasisFamily<T, D>>(

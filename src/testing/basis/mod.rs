@@ -22,8 +22,8 @@ pub struct BasisClaims {
     /// The same for `for_each_at_fixed_point`.
     pub fixed_point_gradients_are_derivatives: bool,
     /// Largest degree of which every polynomial of one coordinate is a sum of the values, with *some*
-    /// coefficients. (For hats and dual domain the coefficients are the polynomial at the nodes, for B-splines
-    /// and a linear field the Greville abscissae.) One degree more must not be reproduced, and
+    /// coefficients. (For hats and dual domain the coefficients are the polynomial at the nodes, for
+    /// B-splines and a linear field the Greville abscissae.) One degree more must not be reproduced, and
     /// [`BasisFamily::degree`] must say the same.
     pub reproduces: usize,
     /// With the coefficients of a linear field, the gradients of `for_each` sum to its gradient.
@@ -49,8 +49,8 @@ impl BasisClaims {
 /// say); on the edges between cells the same values from both; and from points of its own the `claims`, the
 /// `degree`, and that no DOF is out of reach.
 ///
-/// Choose points on edges and faces too. The cost grows with the square of the number of DOFs: a few cells along
-/// each axis are enough, and different numbers of them find more.
+/// Choose points on edges and faces too. The cost grows with the square of the number of DOFs: a few cells
+/// along each axis are enough, and different numbers of them find more.
 ///
 /// # Errors
 /// The first property that does not hold, or holds although it is claimed not to.

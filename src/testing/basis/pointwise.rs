@@ -33,8 +33,8 @@ pub(super) fn check<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     Face::all::<D>().try_for_each(|face| on_face(basis, grid, face, x, error))
 }
 
-/// The DOFs at `x` are those at the cell's centre, one by one, and in the window of every span of cells with this one at
-/// an end.
+/// The DOFs at `x` are those at the cell's centre, one by one, and in the window of every span of cells with
+/// this one at an end.
 fn same_dofs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,

@@ -68,9 +68,10 @@ impl<T: Scalar, const D: usize> Sample<T, D> {
 
 /// Round-off of one value, absolute, in units where a value is at most 1.
 ///
-/// The local coordinate `(x - min)/h - cell` carries two rounding errors of a number as large as the number of
-/// cells, and a point on an edge two of one as large as the edge's position in cells. A polynomial with values in `[0, 1]` on the cell has a slope of at most `degree^2` there
-/// (Markov), and its evaluation takes about `4 (degree + 1)` operations; both once per axis.
+/// The local coordinate `(x - min)/h - cell` carries two rounding errors of a number as large as the number
+/// of cells, and a point on an edge two of one as large as the edge's position in cells. A polynomial with
+/// values in `[0, 1]` on the cell has a slope of at most `degree^2` there (Markov), and its evaluation takes
+/// about `4 (degree + 1)` operations; both once per axis.
 pub(super) fn value_error<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,

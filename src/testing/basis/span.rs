@@ -1,8 +1,8 @@
 //! Which polynomials are sums of the basis functions.
 //!
-//! The functions, sampled at Gauss points, are made orthonormal, and a polynomial is projected onto them: what
-//! is left is the part that no coefficients reproduce. Every step is applied to the gradients too, so the same
-//! projection tells what the gradients make of the polynomial. No coefficients are ever needed.
+//! The functions, sampled at Gauss points, are made orthonormal, and a polynomial is projected onto them:
+//! what is left is the part that no coefficients reproduce. Every step is applied to the gradients too, so
+//! the same projection tells what the gradients make of the polynomial. No coefficients are ever needed.
 
 use nalgebra::SVector;
 

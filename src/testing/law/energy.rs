@@ -13,10 +13,11 @@ const STEPS: usize = 512;
 
 /// Compares `energy * volume` with the work of the stress at the end of straight paths.
 ///
-/// An increment `d` stands for the logarithmic strain `d - d^2/2 + ...`, and a law may follow it at first order:
-/// relative errors of the work and of the energy are some `d` each, `4 d` together. An energy per volume is
-/// computed from numbers of the size of the modulus. Where a path strains the law at second order only, as an isochoric one does a
-/// fluid, all of the energy is of that error: the modulus times the square of the `d^2` of all increments.
+/// An increment `d` stands for the logarithmic strain `d - d^2/2 + ...`, and a law may follow it at first
+/// order: relative errors of the work and of the energy are some `d` each, `4 d` together. An energy per
+/// volume is computed from numbers of the size of the modulus. Where a path strains the law at second order
+/// only, as an isochoric one does a fluid, all of the energy is of that error: the modulus times the square
+/// of the `d^2` of all increments.
 pub(super) fn is_work<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
     law: &L,
     sample: &LawSample<T>,

@@ -24,8 +24,8 @@ pub struct LawSample<T> {
 /// What a law claims beyond what the trait demands of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LawClaims {
-    /// `energy_density` is what the stress has worked, however far the strain goes; otherwise only its leading term
-    /// in the strain.
+    /// `energy_density` is what the stress has worked, however far the strain goes; otherwise only its
+    /// leading term in the strain.
     pub energy_is_work: bool,
     /// `wave_speed` is the speed of the fastest wave along an axis; otherwise more than that.
     pub wave_speed_is_sharp: bool,

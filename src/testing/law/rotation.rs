@@ -17,8 +17,9 @@ const ANGLE: f64 = 0.5;
 /// Spins stretched material about the axis normal to axes 0 and 1.
 ///
 /// An increment of pure spin by `theta` stretches by `theta^2 / 2` in a law that multiplies deformation
-/// gradients, altogether by `angle theta / 2`, and turns stress by an angle wrong at that order; twice that is
-/// allowed. Work on that stretch is done along both axes, and a fluid bears as much along the second as along the first.
+/// gradients, altogether by `angle theta / 2`, and turns stress by an angle wrong at that order; twice that
+/// is allowed. Work on that stretch is done along both axes, and a fluid bears as much along the second as
+/// along the first.
 pub(super) fn check<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
     law: &L,
     sample: &LawSample<T>,

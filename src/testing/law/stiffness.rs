@@ -110,8 +110,8 @@ pub(super) fn small_increments<T: Scalar, const D: usize, L: ConstitutiveLaw<T, 
     Ok(())
 }
 
-/// At rest, stretched and compressed: no axis is stiffer than the wave speed says, and where it is claimed, the
-/// stiffest is as stiff as that.
+/// At rest, stretched and compressed: no axis is stiffer than the wave speed says, and where it is claimed,
+/// the stiffest is as stiff as that.
 pub(super) fn wave_speed<T: Scalar, const D: usize, L: ConstitutiveLaw<T, D>>(
     law: &L,
     sample: &LawSample<T>,

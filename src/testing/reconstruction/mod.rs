@@ -20,7 +20,8 @@ pub enum Measure {
     OccupiedCells,
     /// In each cell, the volume of its particles.
     Particles,
-    /// In all cells together, the volume of all particles: the stream of a particle may reach into other cells.
+    /// In all cells together, the volume of all particles: the stream of a particle may reach into other
+    /// cells.
     AllParticles,
 }
 
@@ -32,11 +33,13 @@ pub struct ReconstructionClaims {
     pub conserves_amounts: bool,
     /// What the weights sum to.
     pub measure: Measure,
-    /// Largest degree of polynomials that `integrate` streams exactly at points which are not the particles; one
-    /// degree more it must not. Without meaning where the particles are streamed, which is exact for any field.
+    /// Largest degree of polynomials that `integrate` streams exactly at points which are not the particles;
+    /// one degree more it must not. Without meaning where the particles are streamed, which is exact for any
+    /// field.
     pub reproduces: usize,
-    /// Largest degree of polynomials whose integral over each occupied cell `integrate` gives exactly; one degree
-    /// more it must not. `None` if not even the constant's, as where particles do not fill their cells.
+    /// Largest degree of polynomials whose integral over each occupied cell `integrate` gives exactly; one
+    /// degree more it must not. `None` if not even the constant's, as where particles do not fill their
+    /// cells.
     pub integrates: Option<usize>,
 }
 

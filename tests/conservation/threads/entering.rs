@@ -52,8 +52,8 @@ impl<const D: usize> ConstitutiveLaw<f64, D> for Watched {
 struct Found {
     bits: Vec<u64>,
     threads: HashSet<(ThreadId, bool)>,
-    /// How often the thread that asked for the steps gave its processor up because it had to wait, where the system
-    /// tells.
+    /// How often the thread that asked for the steps gave its processor up because it had to wait, where the
+    /// system tells.
     waits: Option<usize>,
 }
 
@@ -117,8 +117,8 @@ fn outside_and_alone(run: impl Fn() -> Found + Send + Sync) -> [Found; 2] {
     [outside, alone.install(&run)]
 }
 
-/// Once a step, and once more if it wakes while the one that woke it still holds the lock. A pass sent alone is a wait:
-/// a relaxed step had more than twenty.
+/// Once a step, and once more if it wakes while the one that woke it still holds the lock. A pass sent alone
+/// is a wait: a relaxed step had more than twenty.
 #[track_caller]
 fn enters_once_a_step(run: impl Fn() -> Found + Send + Sync) {
     // Two threads also on a machine with one processor, unless another test has started the pool already.

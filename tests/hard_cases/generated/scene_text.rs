@@ -1,7 +1,8 @@
 //! Scenes that the language allows, drawn at random and written as text.
 //!
-//! Lengths, stiffness, densities and velocities run over decades, but keep to the wave's speed: a velocity of at most a
-//! fifth of it, loads of at most a fifth of the modulus, steps of up to three times what a wave takes to cross a cell.
+//! Lengths, stiffness, densities and velocities run over decades, but keep to the wave's speed: a velocity of
+//! at most a fifth of it, loads of at most a fifth of the modulus, steps of up to three times what a wave
+//! takes to cross a cell.
 
 use std::fmt::{self, Write};
 

@@ -75,7 +75,8 @@ const TAYLOR: ReconstructionClaims = ReconstructionClaims {
     integrates: Some(2),
 };
 
-/// The outermost domains reach into the neighbour's cell or out of the grid, so that no cell's own integral is exact.
+/// The outermost domains reach into the neighbour's cell or out of the grid, so that no cell's own integral
+/// is exact.
 const SUB_POINTS: ReconstructionClaims = ReconstructionClaims {
     conserves_amounts: true,
     measure: Measure::AllParticles,
@@ -123,7 +124,8 @@ fn our_reconstructions_keep_their_claims() -> Result<(), Failure> {
 #[test]
 fn our_reconstructions_keep_their_claims_in_single_precision() -> Result<(), Failure> {
     ours::<f32>()?;
-    // On more cells the fourth power is so nearly cubic between particles that round-off hides the difference.
+    // On more cells the fourth power is so nearly cubic between particles that round-off hides the
+    // difference.
     check::<f32, 1, _>(CubicSpline::for_degree(2), 2, SPLINE)
 }
 
@@ -210,8 +212,8 @@ enum Mistake {
     Remembers,
 }
 
-/// Shepard's stream with one mistake; `AT` is what it says of its points. It also keeps the smallest position it
-/// ever saw.
+/// Shepard's stream with one mistake; `AT` is what it says of its points. It also keeps the smallest position
+/// it ever saw.
 #[derive(Clone, Copy, Debug)]
 struct Faulty<const AT: bool> {
     mistake: Mistake,

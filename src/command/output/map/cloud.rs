@@ -90,8 +90,8 @@ fn draw_dots(canvas: &mut Canvas, frame: &Frame, colours: &Scale, samples: &[Sam
     }
 }
 
-/// Typical distance (px) of neighbours: the area of the cells that hold any, shared; the cells are halved until they
-/// hold few.
+/// Typical distance (px) of neighbours: the area of the cells that hold any, shared; the cells are halved
+/// until they hold few.
 fn spacing(frame: &Frame, samples: &[Sample]) -> f64 {
     let mut side = frame.width.max(frame.height);
     loop {

@@ -37,11 +37,11 @@ pub struct MapPanel {
     pub values: Vec<f64>,
 }
 
-/// A picture (SVG text) of fields over the plane: one map a field, each with a colour bar of its own, all of one
-/// region (that of all bounds) and with equal scales.
+/// A picture (SVG text) of fields over the plane: one map a field, each with a colour bar of its own, all of
+/// one region (that of all bounds) and with equal scales.
 ///
-/// Particles are dots; where they are more than 20 000, means over at most 200 x 200 tiles. Particles outside and
-/// values that are not finite are counted in the map.
+/// Particles are dots; where they are more than 20 000, means over at most 200 x 200 tiles. Particles outside
+/// and values that are not finite are counted in the map.
 pub fn draw_maps(title: &str, panels: &[MapPanel]) -> String {
     let bounds: Vec<_> = panels.iter().map(|panel| panel.bounds).collect();
     let points: Vec<_> = panels.iter().map(|panel| panel.points.as_slice()).collect();

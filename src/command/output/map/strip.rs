@@ -26,8 +26,9 @@ pub struct StripFrame {
 
 /// A picture (SVG text) of one field at several times, with one colour bar for all.
 ///
-/// `bounds` are the grid's corner with the lowest coordinates and its opposite (m); `unit` is that of the values, such
-/// as `Pa`, empty for none. Particles are drawn and counted as in [`draw_maps`](super::draw_maps).
+/// `bounds` are the grid's corner with the lowest coordinates and its opposite (m); `unit` is that of the
+/// values, such as `Pa`, empty for none. Particles are drawn and counted as in
+/// [`draw_maps`](super::draw_maps).
 pub fn draw_strip(
     title: &str,
     frames: &[StripFrame],

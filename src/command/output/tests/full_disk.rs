@@ -106,8 +106,8 @@ fn on_a_small_file_system() {
     println!("kept on a small disk");
 }
 
-/// Mounts a small file system in a name space of its own, which ends with it; where that is not allowed the tests
-/// above must do.
+/// Mounts a small file system in a name space of its own, which ends with it; where that is not allowed the
+/// tests above must do.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_real_disk_that_is_full_keeps_the_older_file() {

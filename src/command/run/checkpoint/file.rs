@@ -1,7 +1,8 @@
-//! The container: eight bytes that say what the file is, a version, the content, and a checksum of all before it.
+//! The container: eight bytes that say what the file is, a version, the content, and a checksum of all before
+//! it.
 //!
-//! Everything is little-endian. The checksum is checked before anything is believed, so that a damaged file is told from a
-//! sound one at once, and no length in it makes us ask for memory that it does not fill.
+//! Everything is little-endian. The checksum is checked before anything is believed, so that a damaged file
+//! is told from a sound one at once, and no length in it makes us ask for memory that it does not fill.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Take, Write};

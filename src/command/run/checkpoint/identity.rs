@@ -7,8 +7,8 @@ use crate::scene::{Scene, StepSize, TimeSpec};
 /// Begins the line of an expression that says where it stands and how it was written.
 const ORIGIN: &str = "origin: ";
 
-/// The scene as text, line by line, in the words of its keys. The end of steps of a given size decides how many there are and
-/// nothing else, and is left out.
+/// The scene as text, line by line, in the words of its keys. The end of steps of a given size decides how
+/// many there are and nothing else, and is left out.
 pub(super) fn identity(scene: &Scene) -> String {
     format!("{:#?}", Identity(scene))
 }
@@ -79,7 +79,8 @@ struct Place {
     value: String,
 }
 
-/// What a line of an identity is about: the names of the blocks that it is in, or the expression that it is part of.
+/// What a line of an identity is about: the names of the blocks that it is in, or the expression that it is
+/// part of.
 fn place(lines: &[&str], line: usize) -> Place {
     let this = lines.get(line).copied().unwrap_or_default();
     let mut level = indentation(this);

@@ -1,8 +1,9 @@
 //! Checkpoints: all that a run needs to go on where it was, in one file.
 //!
-//! A checkpoint holds the scene as far as it makes the numbers, the steps, how far the run is with the range of its energy, the
-//! frames written so far, and the simulation's state to the bit ([`Simulation::save`]). Frames that were written after it are
-//! written again by the resumed run, under the same names and with the same bits.
+//! A checkpoint holds the scene as far as it makes the numbers, the steps, how far the run is with the range
+//! of its energy, the frames written so far, and the simulation's state to the bit ([`Simulation::save`]).
+//! Frames that were written after it are written again by the resumed run, under the same names and with the
+//! same bits.
 
 mod error;
 mod file;
@@ -26,7 +27,8 @@ use materialpoint::stepper::{CriticalStep, Mechanism, Simulation};
 /// Name of the file in the output folder.
 const NAME: &str = "checkpoint.mpm";
 
-/// Writes a checkpoint to the folder of `frames`, if there is one, in place of the one before; returns where it is.
+/// Writes a checkpoint to the folder of `frames`, if there is one, in place of the one before; returns where
+/// it is.
 ///
 /// # Errors
 /// Those of the folder; the checkpoint before is then as it was.

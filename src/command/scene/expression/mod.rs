@@ -59,8 +59,8 @@ impl Expression {
         }
     }
 
-    /// The value where the variables, in the order of [`Expression::parse`], have the given values. A variable
-    /// without a value counts as not a number.
+    /// The value where the variables, in the order of [`Expression::parse`], have the given values. A
+    /// variable without a value counts as not a number.
     ///
     /// # Errors
     /// If the result is infinite or not a number.

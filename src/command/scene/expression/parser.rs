@@ -8,7 +8,8 @@
 //! operand = number | name | name "(" sum [ "," sum ] ")" | "(" sum ")"
 //! ```
 //! A sign binds less than a power and powers group from the right, as in mathematics. (The crate exmex reads
-//! `-x^2` as `(-x)^2` and `2^3^2` as `(2^3)^2`, and knows no `1e-3`: a scene would silently mean another load.)
+//! `-x^2` as `(-x)^2` and `2^3^2` as `(2^3)^2`, and knows no `1e-3`: a scene would silently mean another
+//! load.)
 
 use std::fmt;
 
@@ -32,7 +33,8 @@ pub(super) enum Operation {
     Binary(&'static str, Binary),
 }
 
-/// By name: the address of a function differs from process to process, and this text tells whether two scenes are alike.
+/// By name: the address of a function differs from process to process, and this text tells whether two scenes
+/// are alike.
 impl fmt::Debug for Operation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -63,7 +63,8 @@ pub(super) fn read(
     Ok(bodies)
 }
 
-/// Refuses, along one axis, a given stress where the law's state, the deformation, is what stress follows from.
+/// Refuses, along one axis, a given stress where the law's state, the deformation, is what stress follows
+/// from.
 pub(super) fn check_stress(root: &Section<'_>, law: Law, dimension: usize) -> Result<(), SceneError> {
     if dimension > 1 || !matches!(law, Law::NeoHookean { .. }) {
         return Ok(());

@@ -3,7 +3,8 @@
 use super::{MOST, Section};
 use crate::scene::{Body, GridSpec, ScalarKind, SceneError};
 
-/// Most cells beyond one dimension, where only those of a box around the bodies take memory: their numbers have 32 bits.
+/// Most cells beyond one dimension, where only those of a box around the bodies take memory: their numbers
+/// have 32 bits.
 const MOST_IN_SPACE: u64 = 4_000_000_000;
 
 /// Cells and spacings below this many round-off units of the largest coordinate would be blurred.

@@ -86,7 +86,8 @@ impl<'a> Item<'a> {
         self.value.as_bool().ok_or_else(|| self.wrong_type(expected))
     }
 
-    /// One of the names in `allowed`; names in `later` are part of the scene language but not of this version.
+    /// One of the names in `allowed`; names in `later` are part of the scene language but not of this
+    /// version.
     pub(super) fn choice<T: Copy>(&self, allowed: &[(&str, T)], later: &[&str]) -> Result<T, SceneError> {
         let expected = one_of(allowed.iter().map(|choice| choice.0));
         let name = self.text(&expected)?;

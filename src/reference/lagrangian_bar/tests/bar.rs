@@ -122,8 +122,9 @@ fn estimate_bounds_the_error() {
     );
 }
 
-/// The steepest gradient grows as 1 / (t_b - t). Its reciprocal is extrapolated to the breaking of two weak waves of
-/// half the amplitude in an isothermal gas, which is what Hill's law makes of the bar: t_b = 2 L / (pi v0) = 0.796 s.
+/// The steepest gradient grows as 1 / (t_b - t). Its reciprocal is extrapolated to the breaking of two weak
+/// waves of half the amplitude in an isothermal gas, which is what Hill's law makes of the bar: t_b = 2 L /
+/// (pi v0) = 0.796 s.
 #[test]
 fn steepens_towards_the_known_breaking_time() {
     let mut bar = hill_bar(0.8, 32, 8);
@@ -168,7 +169,8 @@ fn going_back_restarts_and_repeating_changes_nothing() {
     assert_eq!(bar.at(0.3).displacement, 0.0);
 }
 
-/// A step added to a time reaches the next one only within rounding; past it, the same `advance` would start again.
+/// A step added to a time reaches the next one only within rounding; past it, the same `advance` would start
+/// again.
 #[test]
 fn arrives_at_exactly_the_time_asked_for() {
     let mut bar = hill_bar(0.8, 8, 8);

@@ -1,4 +1,5 @@
-//! The compacting column: height 50 m, density 1 kg/m3, Young's modulus 1e6 Pa, body force -200 N/kg after 0.5 s.
+//! The compacting column: height 50 m, density 1 kg/m3, Young's modulus 1e6 Pa, body force -200 N/kg after
+//! 0.5 s.
 
 use std::f64::consts::PI;
 
@@ -11,8 +12,8 @@ const FORCE: f64 = -200.0;
 const RAMP: f64 = 0.5;
 
 /// Stress, Pa, of the linear column by its eigenfunctions: `rho b(t) (H - X)` at rest, less the oscillation
-/// `sum_k E b_k' k_k sin(w_k t) / w_k^3 cos(k_k X)` that each start of a ramp (at 0, and of the opposite one at its
-/// end) sets off; `k_k = (k - 1/2) pi / H`, `w_k = c k_k`, `b_k' = 2 b' / (H k_k)`.
+/// `sum_k E b_k' k_k sin(w_k t) / w_k^3 cos(k_k X)` that each start of a ramp (at 0, and of the opposite one
+/// at its end) sets off; `k_k = (k - 1/2) pi / H`, `w_k = c k_k`, `b_k' = 2 b' / (H k_k)`.
 fn series_stress(x: f64, time: f64) -> f64 {
     let rate = FORCE / RAMP;
     let speed = MODULUS.sqrt();
@@ -88,7 +89,8 @@ fn linear_column_follows_its_eigenfunctions() {
     }
 }
 
-/// The kink of the ramp leaves a jump in the stress's second derivative, which a polynomial meets with order 2.5.
+/// The kink of the ramp leaves a jump in the stress's second derivative, which a polynomial meets with order
+/// 2.5.
 #[test]
 fn kink_limits_the_order() {
     let errors = [5, 10, 20].map(|elements| {
@@ -111,7 +113,8 @@ fn ramp_end_is_a_step_boundary() {
     assert_eq!(through.at(20.0), stopping.at(20.0));
 }
 
-/// Measured by an independent prototype: 3.6e-3, because five half periods cancel the vibration to first order only.
+/// Measured by an independent prototype: 3.6e-3, because five half periods cancel the vibration to first
+/// order only.
 #[test]
 fn residual_vibration_of_the_benchmark() {
     let mut rest = StaticColumn::new(HEIGHT, 1.0, MODULUS, FORCE, Strain::Large).unwrap();

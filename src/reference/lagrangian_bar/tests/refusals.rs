@@ -122,7 +122,8 @@ fn state_that_is_no_number() {
     assert!(bar.advance(1e-6).is_err());
 }
 
-/// In one step of 1e-5 s the strain v0 pi t / L reaches 2.5e-5 in the last stage, whose stress only the velocity sees.
+/// In one step of 1e-5 s the strain v0 pi t / L reaches 2.5e-5 in the last stage, whose stress only the
+/// velocity sees.
 #[test]
 fn stress_that_is_no_number_in_the_last_stage() {
     struct Brittle;

@@ -5,13 +5,13 @@ use crate::reference::two_phase::TwoPhaseReference;
 use crate::reference::{ReferenceError, UniaxialLaw};
 
 impl<L: UniaxialLaw + Clone> LagrangianSoil<L> {
-    /// Estimates the relative error of the stresses at `time`, s, in the L2 norm over the column, effective stress and
-    /// pore pressure together, by comparing with half the elements. Advances to `time`.
+    /// Estimates the relative error of the stresses at `time`, s, in the L2 norm over the column, effective
+    /// stress and pore pressure together, by comparing with half the elements. Advances to `time`.
     ///
-    /// The number is the difference of the two solutions, so it is about the error of the *coarser* one: that of this one
-    /// is smaller, by the factor that a doubling gains (at least 16 where the solution is smooth). It includes the error
-    /// in time, because the coarser solution takes twice the step. It is 0 while neither has any stress, and infinite
-    /// where only this one has none.
+    /// The number is the difference of the two solutions, so it is about the error of the *coarser* one: that
+    /// of this one is smaller, by the factor that a doubling gains (at least 16 where the solution is
+    /// smooth). It includes the error in time, because the coarser solution takes twice the step. It is 0
+    /// while neither has any stress, and infinite where only this one has none.
     ///
     /// # Errors
     /// As [`advance`](TwoPhaseReference::advance), of either solution.

@@ -22,12 +22,12 @@ const WEIGHTS: [[f64; STAGES]; STAGES] = [
 
 /// The method's work space.
 ///
-/// M. Hochbruck and A. Ostermann, *Explicit exponential Runge-Kutta methods for semilinear parabolic problems*, SIAM J.
-/// Numer. Anal. 43 (2005) 1069-1090, equation 5.19, for $y' = L y + N(t, y)$: $L$ is the drag of each node as it is at
-/// the start of the step, a relaxation of the relative velocity that leaves the momentum; $N$ is all the rest, the change
-/// of the drag included. However strong the drag, it does not limit the step, and the order stays where a method of four
-/// stages (S. M. Cox and P. C. Matthews 2002) falls back to 1. Without drag the stability is that of the classical
-/// Runge-Kutta method.
+/// M. Hochbruck and A. Ostermann, *Explicit exponential Runge-Kutta methods for semilinear parabolic
+/// problems*, SIAM J. Numer. Anal. 43 (2005) 1069-1090, equation 5.19, for $y' = L y + N(t, y)$: $L$ is the
+/// drag of each node as it is at the start of the step, a relaxation of the relative velocity that leaves the
+/// momentum; $N$ is all the rest, the change of the drag included. However strong the drag, it does not limit
+/// the step, and the order stays where a method of four stages (S. M. Cox and P. C. Matthews 2002) falls back
+/// to 1. Without drag the stability is that of the classical Runge-Kutta method.
 #[derive(Clone, Debug)]
 pub(super) struct Exponential {
     stage: Fields,
@@ -86,7 +86,8 @@ impl Exponential {
         }
     }
 
-    /// Moves `fields` on by `step`, s. `rate` takes the time and the fields; after its error `fields` is unchanged.
+    /// Moves `fields` on by `step`, s. `rate` takes the time and the fields; after its error `fields` is
+    /// unchanged.
     pub(super) fn step<E>(
         &mut self,
         time: f64,
@@ -162,8 +163,8 @@ mod tests {
     use super::*;
     use std::convert::Infallible;
 
-    /// One node whose relative velocity follows w' = -d (1 + c sin t) w + d cos t from the value that strong drag allows, whose mean velocity turns with the
-    /// pressure, and whose displacement integrates.
+    /// One node whose relative velocity follows w' = -d (1 + c sin t) w + d cos t from the value that strong
+    /// drag allows, whose mean velocity turns with the pressure, and whose displacement integrates.
     fn march(drag: f64, change: f64, steps: u32) -> Fields {
         let mut fields = Fields::zeros(1, 1);
         fields.solid[0] = 1.0;

@@ -43,8 +43,8 @@ impl Fields {
         self.liquid[node] - self.solid[node]
     }
 
-    /// Adds `change`, m/s, to the relative velocity of a node and leaves its momentum; `share` is the part of its mass
-    /// that is liquid.
+    /// Adds `change`, m/s, to the relative velocity of a node and leaves its momentum; `share` is the part of
+    /// its mass that is liquid.
     pub(super) fn shift(&mut self, node: usize, share: f64, change: f64) {
         self.solid[node] -= share * change;
         self.liquid[node] += (1.0 - share) * change;

@@ -3,12 +3,13 @@
 use crate::reference::Resolution;
 use crate::reference::lobatto::Lobatto;
 
-/// Nodes are numbered from the base, and neighbouring elements share one. *Points* are the nodes of each element by
-/// themselves, numbered element by element: values there may jump between elements.
+/// Nodes are numbered from the base, and neighbouring elements share one. *Points* are the nodes of each
+/// element by themselves, numbered element by element: values there may jump between elements.
 #[derive(Clone, Debug)]
 pub(super) struct Mesh {
     rule: Lobatto,
-    /// Row `i` of an element: what the stress at each of its nodes contributes to the internal force on node `i`.
+    /// Row `i` of an element: what the stress at each of its nodes contributes to the internal force on node
+    /// `i`.
     weak_derivative: Vec<f64>,
     /// Heights above the base at which elements end, m.
     edges: Vec<f64>,
@@ -124,8 +125,8 @@ impl Mesh {
         2.0 / self.size(element) * self.largest_eigenvalue
     }
 
-    /// The element and the coordinate in it, -1 to 1, of a height above the base, m; beyond the ends, of the end. The
-    /// edge of two elements belongs to the upper one.
+    /// The element and the coordinate in it, -1 to 1, of a height above the base, m; beyond the ends, of the
+    /// end. The edge of two elements belongs to the upper one.
     pub(super) fn locate(&self, x: f64) -> (usize, f64) {
         let below = self.edges.partition_point(|edge| *edge <= x);
         let element = below.saturating_sub(1).min(self.element_count() - 1);

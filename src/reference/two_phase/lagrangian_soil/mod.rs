@@ -17,15 +17,16 @@ use fields::Fields;
 use operator::{Loads, Operator};
 pub use problem::{SoilEnd, SoilProblem};
 
-/// Part of the stable step of the waves that is taken. The frequency is bounded for the state at the start of the step,
-/// and the drag of the nodes is not the only thing that couples the phases, so something must be left.
+/// Part of the stable step of the waves that is taken. The frequency is bounded for the state at the start of
+/// the step, and the drag of the nodes is not the only thing that couples the phases, so something must be
+/// left.
 const STEP_FRACTION: f64 = 0.7;
 
 /// Elements merge when the pore pressure has spread over this many of the merged ones, squared.
 const MERGER: f64 = 1.0;
 
-/// Resolution of the consolidation. In report 18-2's large-strain benchmark the settlement then changes by 1e-5 under
-/// refinement.
+/// Resolution of the consolidation. In report 18-2's large-strain benchmark the settlement then changes by
+/// 1e-5 under refinement.
 const CONSOLIDATION: Resolution = Resolution {
     elements: 16,
     degree: 6,
@@ -35,28 +36,30 @@ const CONSOLIDATION_LEVELS: usize = 5;
 
 /// A converged solution of saturated soil with inertia of both phases, in the reference configuration.
 ///
-/// With the material coordinate $X$ of the solid, its stretch $\lambda = 1 + u'$, a prime for the derivative to $X$ and a
-/// body force $b$,
+/// With the material coordinate $X$ of the solid, its stretch $\lambda = 1 + u'$, a prime for the derivative
+/// to $X$ and a body force $b$,
 ///
-/// $$\begin{aligned}
-/// \rho_w \dot v_w &= \frac{p'}{\lambda} - \frac{n \gamma_w}{k} (v_w - v_s) + \rho_w b, & k &= k_0 \lambda^m, \\\\
-/// (1-n) \rho_s \dot v_s + n \rho_w \lambda \dot v_w &= (\sigma' + p)' + ((1-n) \rho_s + n \rho_w \lambda) b, &
+/// $$\begin{aligned} \rho_w \dot v_w &= \frac{p'}{\lambda} - \frac{n \gamma_w}{k} (v_w - v_s) + \rho_w b, & k
+/// &= k_0 \lambda^m, \\\\ (1-n) \rho_s \dot v_s + n \rho_w \lambda \dot v_w &= (\sigma' + p)' + ((1-n)
+/// \rho_s + n \rho_w \lambda) b, &
 ///     \sigma' &= \sigma'(\lambda), \\\\
 /// \dot p &= \frac{K_w}{n \lambda} ((1-n) v_s' + n v_w'), & \dot u &= v_s.
 /// \end{aligned}$$
 ///
-/// These are the equations of the [module](super) as the method solves them: the porosity is constant, and the liquid is
-/// not advected relative to the solid. At small strain $\lambda = 1$ outside the law. Ends are fixed and impermeable, or
-/// drained with $\sigma' + p = q(t)$ and $p = \hat p$, both natural.
+/// These are the equations of the [module](super) as the method solves them: the porosity is constant, and
+/// the liquid is not advected relative to the solid. At small strain $\lambda = 1$ outside the law. Ends are
+/// fixed and impermeable, or drained with $\sigma' + p = q(t)$ and $p = \hat p$, both natural.
 ///
-/// Displacement and velocities are continuous on spectral elements, Lagrange polynomials on Gauss-Lobatto-Legendre nodes
-/// with quadrature on the same nodes, so all masses are diagonal; the pore pressure belongs to the nodes of each element.
-/// Source: C. Canuto, M. Y. Hussaini, A. Quarteroni, T. A. Zang, *Spectral Methods*, Springer 2006. Time is marched by an
-/// exponential Runge-Kutta method (M. Hochbruck and A. Ostermann, SIAM J. Numer. Anal. 43, 2005) that is exact in the drag:
-/// the step follows from the waves alone, at any permeability.
+/// Displacement and velocities are continuous on spectral elements, Lagrange polynomials on
+/// Gauss-Lobatto-Legendre nodes with quadrature on the same nodes, so all masses are diagonal; the pore
+/// pressure belongs to the nodes of each element. Source: C. Canuto, M. Y. Hussaini, A. Quarteroni, T. A.
+/// Zang, *Spectral Methods*, Springer 2006. Time is marched by an exponential Runge-Kutta method (M.
+/// Hochbruck and A. Ostermann, SIAM J. Numer. Anal. 43, 2005) that is exact in the drag: the step follows
+/// from the waves alone, at any permeability.
 ///
-/// How good a solution is, [`error_estimate`](LagrangianSoil::error_estimate) says. Where a pore pressure jumps at a
-/// drained end at time 0, [`levels`](SoilProblem::levels) of finer elements resolve its first spreading.
+/// How good a solution is, [`error_estimate`](LagrangianSoil::error_estimate) says. Where a pore pressure
+/// jumps at a drained end at time 0, [`levels`](SoilProblem::levels) of finer elements resolve its first
+/// spreading.
 #[doc = include_str!("../../../../docs/formulas.html")]
 ///
 /// ```
@@ -94,8 +97,8 @@ impl<L: UniaxialLaw + Clone> LagrangianSoil<L> {
     /// The solution of `problem` with the given `resolution`, at time 0.
     ///
     /// # Errors
-    /// Where a parameter is out of range, an initial value is not finite, or the stiffness of the undeformed skeleton is
-    /// not positive.
+    /// Where a parameter is out of range, an initial value is not finite, or the stiffness of the undeformed
+    /// skeleton is not positive.
     pub fn new(problem: SoilProblem<L>, resolution: Resolution) -> Result<Self, ReferenceError> {
         problem.check()?;
         let level = problem.levels;
@@ -115,15 +118,16 @@ impl<L: UniaxialLaw + Clone> LagrangianSoil<L> {
         })
     }
 
-    /// Consolidation at large strain: a layer of initial `height`, m, with a fixed base and a drained top, under `load`,
-    /// Pa (negative in compression), which the liquid carries at first.
+    /// Consolidation at large strain: a layer of initial `height`, m, with a fixed base and a drained top,
+    /// under `load`, Pa (negative in compression), which the liquid carries at first.
     ///
     /// With the logarithmic law and the permeability $k_0 \lambda^2$, this is the solution that
-    /// [`XieLeo`](super::XieLeo) with a compressible liquid has without inertia, and what inertia adds. Within about
-    /// $1/\beta$, $\beta = (n g/k) (1 + n \rho_w / ((1-n) \rho_s))$, the jump at the drained end travels as a shock that
-    /// nothing but the drag dissipates, and sets off the undrained wave, which may ring for long. Shock and wave converge
-    /// slowly: in report 18-2's benchmark, with $k_0$ = 3.68e-4 m/s, the wave at 0.4 s moves the top by 3e-5 m, 5e-4 of
-    /// the settlement, and the error estimate is 1e-3. A load that grows smoothly has none of this.
+    /// [`XieLeo`](super::XieLeo) with a compressible liquid has without inertia, and what inertia adds.
+    /// Within about $1/\beta$, $\beta = (n g/k) (1 + n \rho_w / ((1-n) \rho_s))$, the jump at the drained end
+    /// travels as a shock that nothing but the drag dissipates, and sets off the undrained wave, which may
+    /// ring for long. Shock and wave converge slowly: in report 18-2's benchmark, with $k_0$ = 3.68e-4 m/s,
+    /// the wave at 0.4 s moves the top by 3e-5 m, 5e-4 of the settlement, and the error estimate is 1e-3. A
+    /// load that grows smoothly has none of this.
     ///
     /// # Errors
     /// As [`new`](LagrangianSoil::new).
@@ -254,8 +258,9 @@ impl<L: UniaxialLaw + Clone> TwoPhaseReference for LagrangianSoil<L> {
     /// Marches from the last time to `time`.
     ///
     /// # Errors
-    /// Where `time` is negative or not finite, load or body force is not finite, or the skeleton is turned inside out,
-    /// loses its stiffness or leaves the finite numbers. The state then is that of the last step that succeeded.
+    /// Where `time` is negative or not finite, load or body force is not finite, or the skeleton is turned
+    /// inside out, loses its stiffness or leaves the finite numbers. The state then is that of the last step
+    /// that succeeded.
     fn advance(&mut self, time: f64) -> Result<(), ReferenceError> {
         check::time(time)?;
         if time < self.time {

@@ -181,8 +181,8 @@ impl Operator {
         Ok(largest)
     }
 
-    /// Square of the speed of the faster wave without drag, m2/s2: the larger root of `det(C - c^2 M)` with the masses
-    /// and stiffnesses of both phases per reference volume.
+    /// Square of the speed of the faster wave without drag, m2/s2: the larger root of `det(C - c^2 M)` with
+    /// the masses and stiffnesses of both phases per reference volume.
     fn fast_speed_squared(&self, stretch: f64, stiffness: f64) -> f64 {
         let (n, geometry) = (self.soil.porosity, self.geometry(stretch));
         let liquid = n * self.soil.liquid_density * geometry;
@@ -222,8 +222,8 @@ impl Operator {
         })
     }
 
-    /// Relative L2 norm of the difference to the state `other` of each of these `fields`, of effective stress and pore
-    /// pressure together.
+    /// Relative L2 norm of the difference to the state `other` of each of these `fields`, of effective stress
+    /// and pore pressure together.
     pub(super) fn difference(
         &self,
         law: &impl UniaxialLaw,

@@ -20,8 +20,8 @@ pub enum SoilEnd {
 
 /// A column of saturated soil, undeformed at time 0.
 ///
-/// Begins with its base, at 0, fixed and its top drained, at rest, without stress, load or weight, at large strain; the
-/// methods change that.
+/// Begins with its base, at 0, fixed and its top drained, at rest, without stress, load or weight, at large
+/// strain; the methods change that.
 ///
 /// ```
 /// # use materialpoint::reference::{Hill, two_phase::{Soil, SoilProblem}};
@@ -110,7 +110,8 @@ impl<L> SoilProblem<L> {
         }
     }
 
-    /// Gives the body force $b$ on both phases, N/kg (weight is $-g$), as a continuous function of time, s; default 0.
+    /// Gives the body force $b$ on both phases, N/kg (weight is $-g$), as a continuous function of time, s;
+    /// default 0.
     pub fn body_force(self, force: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
         Self {
             body_force: Arc::new(force),
@@ -118,8 +119,8 @@ impl<L> SoilProblem<L> {
         }
     }
 
-    /// Names the times, s, at which load or body force is not smooth. The march makes each of them the end of a step and
-    /// so keeps its order.
+    /// Names the times, s, at which load or body force is not smooth. The march makes each of them the end of
+    /// a step and so keeps its order.
     pub fn kinks(self, times: &[f64]) -> Self {
         let mut kinks = times.to_vec();
         kinks.sort_by(f64::total_cmp);
@@ -128,14 +129,15 @@ impl<L> SoilProblem<L> {
 
     /// Halves the elements at drained ends `levels` times, 0 to 30; default 0.
     ///
-    /// For a pore pressure that jumps at a drained end at time 0: the finest elements resolve its first spreading. They
-    /// merge one by one when it has spread over the next coarser one, so that they cost little.
+    /// For a pore pressure that jumps at a drained end at time 0: the finest elements resolve its first
+    /// spreading. They merge one by one when it has spread over the next coarser one, so that they cost
+    /// little.
     pub fn levels(self, levels: usize) -> Self {
         Self { levels, ..self }
     }
 
-    /// Gives the initial velocities, m/s, as functions of the height above the base, m; default 0. A fixed end does not
-    /// move, whatever they say there.
+    /// Gives the initial velocities, m/s, as functions of the height above the base, m; default 0. A fixed
+    /// end does not move, whatever they say there.
     pub fn initial_velocities(
         self,
         solid: impl Fn(f64) -> f64 + Send + Sync + 'static,
@@ -147,10 +149,11 @@ impl<L> SoilProblem<L> {
         }
     }
 
-    /// Gives initial effective stress and pore pressure, Pa, as functions of the height above the base, m; default 0.
+    /// Gives initial effective stress and pore pressure, Pa, as functions of the height above the base, m;
+    /// default 0.
     ///
-    /// What the law says is added to the initial effective stress. That is what the rates of the linear and the
-    /// logarithmic law say too; Hill's rate depends on the stress.
+    /// What the law says is added to the initial effective stress. That is what the rates of the linear and
+    /// the logarithmic law say too; Hill's rate depends on the stress.
     pub fn initial_stresses(
         self,
         effective: impl Fn(f64) -> f64 + Send + Sync + 'static,

@@ -80,9 +80,9 @@ fn keeps_the_equilibrium_of_the_saturated_column() {
     assert!(estimate < 1e-15, "{estimate}");
 }
 
-/// The exact solution without inertia settles by 5.4027e-2 m. Inertia sets off the undrained wave, which still rings with
-/// 3e-5 m and 0.6 % of the pressure about it; at 0.4 s that makes 5.4040e-2 m. A finite-volume solution on staggered
-/// cells, 200 of them, marched by an implicit method, gives 5.4039e-2 m.
+/// The exact solution without inertia settles by 5.4027e-2 m. Inertia sets off the undrained wave, which
+/// still rings with 3e-5 m and 0.6 % of the pressure about it; at 0.4 s that makes 5.4040e-2 m. A
+/// finite-volume solution on staggered cells, 200 of them, marched by an implicit method, gives 5.4039e-2 m.
 #[test]
 fn large_strain_consolidation_tends_to_the_exact_one() {
     let mut column = benchmark(3.68e-4);
@@ -114,8 +114,8 @@ fn printed_permeability_settles_less() {
     assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
 }
 
-/// A load that grows smoothly, and a layer beneath the drained end that 16 elements do not quite resolve: the error falls
-/// exponentially there.
+/// A load that grows smoothly, and a layer beneath the drained end that 16 elements do not quite resolve: the
+/// error falls exponentially there.
 #[test]
 fn converges_where_the_load_is_smooth() {
     let solve = |elements| {
@@ -137,7 +137,8 @@ fn converges_where_the_load_is_smooth() {
     assert!(fine < 1e-6 && fine < coarse / 100.0, "{coarse} and {fine}");
 }
 
-/// Until all pore pressure has gone, under Hill's law and another law of permeability; drained at the base, too.
+/// Until all pore pressure has gone, under Hill's law and another law of permeability; drained at the base,
+/// too.
 #[test]
 fn ends_at_the_stretch_of_the_load() {
     let soil = Soil {

@@ -14,31 +14,33 @@ use spectrum::Spectrum;
 
 const MOST_MODES: usize = 1_000_000;
 
-/// A standing wave in a linear elastic saturated column with fixed, impermeable ends, at small strain: exact, with
-/// inertia.
+/// A standing wave in a linear elastic saturated column with fixed, impermeable ends, at small strain: exact,
+/// with inertia.
 ///
-/// With $\kappa = m \pi / H$, velocities $\propto \sin \kappa x$ and stresses $\propto \cos \kappa x$, the equations of the
-/// [module](super) without weight become, for displacements $(u_w, u_s) e^{s t}$,
+/// With $\kappa = m \pi / H$, velocities $\propto \sin \kappa x$ and stresses $\propto \cos \kappa x$, the
+/// equations of the [module](super) without weight become, for displacements $(u_w, u_s) e^{s t}$,
 ///
 /// $$\left(s^2 \begin{pmatrix} n \rho_w & \\\\ & (1-n) \rho_s \end{pmatrix}
 ///     + s \frac{n^2 \gamma_w}{k} \begin{pmatrix} 1 & -1 \\\\ -1 & 1 \end{pmatrix}
 ///     + \kappa^2 \left[ \frac{K_w}{n} \begin{pmatrix} n^2 & n (1-n) \\\\ n (1-n) & (1-n)^2 \end{pmatrix}
-///     + \begin{pmatrix} 0 & \\\\ & E \end{pmatrix} \right] \right) \begin{pmatrix} u_w \\\\ u_s \end{pmatrix} = 0.$$
+///     + \begin{pmatrix} 0 & \\\\ & E \end{pmatrix} \right] \right) \begin{pmatrix} u_w \\\\ u_s
+///       \end{pmatrix} = 0.$$
 ///
-/// Measured by the undrained frequency $\omega_0 = \kappa \sqrt{W}$, $W = (E + K_w/n) / \rho$, with the saturated density
-/// $\rho = a + b$, $a = n \rho_w$, $b = (1-n) \rho_s$, and $z = s/\omega_0$, the determinant is the quartic
+/// Measured by the undrained frequency $\omega_0 = \kappa \sqrt{W}$, $W = (E + K_w/n) / \rho$, with the
+/// saturated density $\rho = a + b$, $a = n \rho_w$, $b = (1-n) \rho_s$, and $z = s/\omega_0$, the
+/// determinant is the quartic
 ///
 /// $$z^4 + \delta z^3 + (1 + \gamma + g) z^2 + \delta z + \gamma, \quad
 ///     \delta = \frac{n^2 \gamma_w \rho}{k a b \omega_0}, \quad \gamma = \frac{n K_w E}{a b W^2}, \quad
 ///     g = \frac{(K_w - a W)^2}{a b W^2}.$$
 ///
-/// None of its roots is 0. Their fast pair is a wave of angular frequency $\omega_0$ for $k \to 0$, damped at the rate
-/// $g \omega_0 / (2 \delta)$, and one of the two undamped waves of independent phases for $k \to \infty$. The other pair is
-/// consolidation and decay of the relative velocity, or the slow wave. Own derivation; the waves are those of
-/// M. A. Biot 1956.
+/// None of its roots is 0. Their fast pair is a wave of angular frequency $\omega_0$ for $k \to 0$, damped at
+/// the rate $g \omega_0 / (2 \delta)$, and one of the two undamped waves of independent phases for $k \to
+/// \infty$. The other pair is consolidation and decay of the relative velocity, or the slow wave. Own
+/// derivation; the waves are those of M. A. Biot 1956.
 ///
-/// The solution is the real part of the fast eigenvector, times a factor that gives the solid the asked velocity at
-/// time 0. Displacements begin with 0 there, stresses with what belongs to the wave.
+/// The solution is the real part of the fast eigenvector, times a factor that gives the solid the asked
+/// velocity at time 0. Displacements begin with 0 there, stresses with what belongs to the wave.
 #[doc = include_str!("../../../../docs/formulas.html")]
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandingWave {
@@ -51,12 +53,12 @@ pub struct StandingWave {
 }
 
 impl StandingWave {
-    /// A column of `height`, m, and constrained `modulus`, Pa, with `mode` half waves and the largest initial `velocity`
-    /// of the solid, m/s, with its base at 0.
+    /// A column of `height`, m, and constrained `modulus`, Pa, with `mode` half waves and the largest initial
+    /// `velocity` of the solid, m/s, with its base at 0.
     ///
     /// # Errors
-    /// Where a parameter is not finite, or height or modulus not positive, `mode` not between 1 and 1 000 000 or the
-    /// soil makes no sense.
+    /// Where a parameter is not finite, or height or modulus not positive, `mode` not between 1 and 1 000 000
+    /// or the soil makes no sense.
     pub fn new(
         height: f64,
         modulus: f64,
@@ -86,13 +88,14 @@ impl StandingWave {
         })
     }
 
-    /// The eigenvalues $s$, 1/s: the fast pair, then the other two; of a conjugate pair the one with positive frequency
-    /// first, of a real pair the one that decays more slowly.
+    /// The eigenvalues $s$, 1/s: the fast pair, then the other two; of a conjugate pair the one with positive
+    /// frequency first, of a real pair the one that decays more slowly.
     pub fn eigenvalues(&self) -> [Complex<f64>; 4] {
         self.spectrum().roots().map(|z| z * self.undrained_frequency())
     }
 
-    /// Angular frequency, rad/s, and damping rate, 1/s, of the fast wave: $s = -\text{rate} \pm i\,\text{frequency}$.
+    /// Angular frequency, rad/s, and damping rate, 1/s, of the fast wave: $s = -\text{rate} \pm
+    /// i\,\text{frequency}$.
     pub fn fast_wave(&self) -> (f64, f64) {
         let [fast, ..] = self.eigenvalues();
         (fast.im, -fast.re)
@@ -174,8 +177,8 @@ impl StandingWave {
         self.soil.porosity.powi(2) * self.soil.unit_weight() / self.soil.permeability
     }
 
-    /// $K_w - a W$, Pa, what pushes the liquid through the skeleton when both move together; 0 in a dynamically
-    /// compatible soil. Here without its cancellation.
+    /// $K_w - a W$, Pa, what pushes the liquid through the skeleton when both move together; 0 in a
+    /// dynamically compatible soil. Here without its cancellation.
     fn imbalance(&self) -> f64 {
         let Soil {
             liquid_bulk_modulus,

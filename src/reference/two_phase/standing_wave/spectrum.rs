@@ -7,16 +7,17 @@ const HALVINGS: u32 = 64;
 /// The interval, as factor `exp(-200)` from its upper end: the drag may exceed the frequency by 1e40.
 const INTERVAL: f64 = 200.0;
 
-/// The polynomial $z^4 + \delta z^3 + (1 + \gamma + g) z^2 + \delta z + \gamma$, all of whose coefficients are positive.
+/// The polynomial $z^4 + \delta z^3 + (1 + \gamma + g) z^2 + \delta z + \gamma$, all of whose coefficients
+/// are positive.
 ///
-/// It is $(z^2 + a_1) (z^2 + a_2) + \delta z (z^2 + 1)$ with $a_2 \le 1 \le a_1$: two undamped waves without drag, which
-/// tie into one of frequency 1 when the drag $\delta$ grows. It splits into
+/// It is $(z^2 + a_1) (z^2 + a_2) + \delta z (z^2 + 1)$ with $a_2 \le 1 \le a_1$: two undamped waves without
+/// drag, which tie into one of frequency 1 when the drag $\delta$ grows. It splits into
 ///
 /// $$(z^2 + 2 \mu z + 1 + y) \left(z^2 + (\delta - 2 \mu) z + \frac{\gamma}{1 + y}\right).$$
 ///
-/// Comparing coefficients leaves one equation for $y$, whose every term is a product of quantities that do not cancel;
-/// so $y$ and the damping $\mu$ come out with full relative precision even where they are 1e-15 of the frequency.
-/// Own derivation.
+/// Comparing coefficients leaves one equation for $y$, whose every term is a product of quantities that do
+/// not cancel; so $y$ and the damping $\mu$ come out with full relative precision even where they are 1e-15
+/// of the frequency. Own derivation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spectrum {
     /// $\delta$
@@ -92,7 +93,8 @@ impl Spectrum {
         }
     }
 
-    /// $1 - \gamma$. Equal to 1, $\gamma$ makes the pairs ambiguous; then it is taken for less, by its rounding.
+    /// $1 - \gamma$. Equal to 1, $\gamma$ makes the pairs ambiguous; then it is taken for less, by its
+    /// rounding.
     fn below_one(&self) -> f64 {
         if self.product == 1.0 {
             f64::EPSILON
@@ -101,7 +103,8 @@ impl Spectrum {
         }
     }
 
-    /// $a_1 - 1$ and $1 - a_2$: the roots of $h^2 - (g + \gamma - 1) h - g$, the second with its sign changed.
+    /// $a_1 - 1$ and $1 - a_2$: the roots of $h^2 - (g + \gamma - 1) h - g$, the second with its sign
+    /// changed.
     fn undamped_distances(&self) -> [f64; 2] {
         let middle = self.coupling + self.product - 1.0;
         let larger = 0.5 * (middle.abs() + (middle * middle + 4.0 * self.coupling).sqrt());
@@ -189,7 +192,8 @@ mod tests {
         }
     }
 
-    /// First orders: y = g (1 - gamma) / delta^2 and mu = g / (2 delta) for large drag, far below rounding of 1.
+    /// First orders: y = g (1 - gamma) / delta^2 and mu = g / (2 delta) for large drag, far below rounding
+    /// of 1.
     #[test]
     fn weak_damping_keeps_its_digits() {
         let Factor { damping, excess } = Spectrum {

@@ -22,8 +22,8 @@ fn assert_relative(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance * b.abs(), "{a:e} against {b:e}");
 }
 
-/// Eigenvalues from the roots of the unscaled quartic in 60 digits. Real and imaginary parts are compared separately, so
-/// that the damping is tested where it is 4e-11 of the frequency.
+/// Eigenvalues from the roots of the unscaled quartic in 60 digits. Real and imaginary parts are compared
+/// separately, so that the damping is tested where it is 4e-11 of the frequency.
 #[test]
 #[rustfmt::skip]
 fn eigenvalues_have_the_reference_digits() {

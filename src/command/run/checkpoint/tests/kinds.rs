@@ -5,8 +5,8 @@ use crate::run::{InSpace, run_in};
 use crate::scene::Scene;
 use materialpoint::method::{Method, ReconstructionKind};
 
-/// A block that swirls through cells and slides over a rough floor, and ends before published TLS loses its free sides; what
-/// changes with the dimension is set.
+/// A block that swirls through cells and slides over a rough floor, and ends before published TLS loses its
+/// free sides; what changes with the dimension is set.
 const BLOCK: &str = r#"
     title = "Block"
     [grid]
@@ -89,7 +89,8 @@ fn every_law_and_method_of_the_plane_is_resumed() {
 #[test]
 fn every_method_of_space_is_resumed() {
     for method in Method::all_in(3, 1) {
-        // A wall that rubs asks fits in space for dozens of mappings a step: minutes. It carries nothing from step to step.
+        // A wall that rubs asks fits in space for dozens of mappings a step: minutes. It carries nothing from
+        // step to step.
         let floor = match method.reconstruction {
             ReconstructionKind::Shepard => "boundary=[{face='y-min', friction=0.2}]",
             _ => "boundary=[{face='y-min', roller=true}]",
@@ -135,8 +136,9 @@ fn two_phases_are_resumed() {
     }
 }
 
-/// Water that swings and stiffens: speeds are looked at every 16 steps and the layout every 64, so that checkpoints at an odd number, at a
-/// multiple of 16 and at one of 64 are written between two looks and right before one.
+/// Water that swings and stiffens: speeds are looked at every 16 steps and the layout every 64, so that
+/// checkpoints at an odd number, at a multiple of 16 and at one of 64 are written between two looks and right
+/// before one.
 #[test]
 fn a_run_that_renews_its_step_is_resumed() {
     let text = r#"
@@ -180,7 +182,8 @@ fn a_run_that_renews_its_step_is_resumed() {
     }
 }
 
-/// The body force of the driver is set anew in every step; the step is found. The first kick may be half a one.
+/// The body force of the driver is set anew in every step; the step is found. The first kick may be half a
+/// one.
 #[test]
 fn a_driven_run_with_a_step_of_its_own_is_resumed() {
     for half_kick in ["false", "true"] {

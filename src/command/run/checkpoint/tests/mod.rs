@@ -1,4 +1,5 @@
-//! Goal: every kind of run that a scene can ask for is resumed to the bit, and what does not serve is refused by name.
+//! Goal: every kind of run that a scene can ask for is resumed to the bit, and what does not serve is refused
+//! by name.
 
 mod kinds;
 mod refusals;
@@ -107,7 +108,8 @@ fn a_run_that_is_resumed_at_its_end_has_nothing_left_to_step() {
     assert_eq!(resumed.summary.particle_steps_per_second, 0.0);
 }
 
-/// The longer run has its own samples of the energy: all else is that of a run that was longer from the start.
+/// The longer run has its own samples of the energy: all else is that of a run that was longer from the
+/// start.
 #[test]
 fn a_later_end_makes_the_run_longer() {
     let (_scratch, path, _) = with_checkpoint::<1>("resume-longer", &scene(BAR, &[]));
@@ -118,7 +120,8 @@ fn a_later_end_makes_the_run_longer() {
     assert_eq!(resumed.summary.steps, 26);
 }
 
-/// With files: a resumed run lists the frames before the checkpoint as the others, and says if they are not there.
+/// With files: a resumed run lists the frames before the checkpoint as the others, and says if they are not
+/// there.
 #[test]
 fn frames_before_the_checkpoint_count() {
     let scene = scene(BAR, &["output.particles=vtu", "output.every=4"]);
