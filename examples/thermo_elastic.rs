@@ -14,7 +14,7 @@ use materialpoint::grid::{Face, Grid};
 use materialpoint::law::{LinearElastic, Moduli};
 use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
-use materialpoint::phase::Phase;
+use materialpoint::phase::{Phase, PhaseStep};
 use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
 use materialpoint::scalar::Scalar;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
@@ -67,8 +67,8 @@ impl<T: Scalar, const D: usize> Phase<T, D> for ThermoElastic<T> {
         effective - SMatrix::identity() * (self.thermal_stress * particle.0)
     }
 
-    fn update(&self, increment: &SMatrix<T, D, D>, particle: &mut Warmth<T>) {
-        particle.0 -= self.warming() * increment.trace();
+    fn update(&self, step: &PhaseStep<'_, T, D>, particle: &mut Warmth<T>) {
+        particle.0 -= self.warming() * step.solid.trace();
     }
 
     /// With the strain energy at constant temperature and that of motion it is constant.

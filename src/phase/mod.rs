@@ -12,6 +12,53 @@ use nalgebra::{SMatrix, SVector};
 use crate::error::SetupError;
 use crate::scalar::Scalar;
 
+/// What a [`Phase`] is told of one step of a particle.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct PhaseStep<'a, T, const D: usize> {
+    /// Length of the step (s); zero where it is asked how stiff the phase is.
+    pub dt: T,
+    /// Displacement gradient of the solid over the step.
+    pub solid: &'a SMatrix<T, D, D>,
+    /// That of the liquid; the solid's, where none flows.
+    pub liquid: &'a SMatrix<T, D, D>,
+    /// Effective stress (Pa) of the solid at the end of the step.
+    pub stress: &'a SMatrix<T, D, D>,
+    /// Volume (m3) of the particle at the end of the step.
+    pub volume: T,
+}
+
+impl<'a, T: Scalar, const D: usize> PhaseStep<'a, T, D> {
+    /// A step of no time of a particle of volume one.
+    pub fn strain(solid: &'a SMatrix<T, D, D>, stress: &'a SMatrix<T, D, D>) -> Self {
+        Self {
+            dt: T::zero(),
+            solid,
+            liquid: solid,
+            stress,
+            volume: T::one(),
+        }
+    }
+
+    /// With another displacement gradient of the liquid.
+    #[must_use]
+    pub fn with_liquid(self, liquid: &'a SMatrix<T, D, D>) -> Self {
+        Self { liquid, ..self }
+    }
+
+    /// With the length of the step (s).
+    #[must_use]
+    pub fn with_time(self, dt: T) -> Self {
+        Self { dt, ..self }
+    }
+
+    /// With a volume (m3).
+    #[must_use]
+    pub fn with_volume(self, volume: T) -> Self {
+        Self { volume, ..self }
+    }
+}
+
 /// What a particle carries besides its solid, and how that enters the balance of momentum.
 ///
 /// [`OnePhase`] is the dry solid: no data, no work. [`TwoPhase`] is a solid whose pores are full of a liquid
@@ -36,10 +83,9 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
     /// Stress (Pa) that the momentum balance of the whole feels, given the solid's effective stress.
     fn total_stress(&self, effective: &SMatrix<T, D, D>, particle: &Self::Particle) -> SMatrix<T, D, D>;
 
-    /// Carries the data of a phase that does not flow over the displacement gradient `increment` of one step.
-    /// Asked of copies of the data too, with small increments, to find how stiff the phase is: nothing but
-    /// the data may change.
-    fn update(&self, increment: &SMatrix<T, D, D>, particle: &mut Self::Particle);
+    /// Carries the data over one step, after the law and the volume. Asked of copies of the data too, with
+    /// small increments and no time, to find how stiff the phase is: nothing but the data may change.
+    fn update(&self, step: &PhaseStep<'_, T, D>, particle: &mut Self::Particle);
 
     /// Energy that the phase stores beside the strain energy of the law, per volume (J/m3): heat, a
     /// compressed liquid.
@@ -54,16 +100,6 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
     /// If one of them makes no sense.
     fn validate(&self) -> Result<(), SetupError> {
         Ok(())
-    }
-
-    /// Carries the data over the displacement gradients of solid and liquid.
-    fn update_with_flow(
-        &self,
-        _solid: &SMatrix<T, D, D>,
-        _liquid: &SMatrix<T, D, D>,
-        _particle: &mut Self::Particle,
-    ) {
-        const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `update_with_flow`") };
     }
 
     /// Velocity (m/s) and pressure (Pa, tension positive) of a particle's liquid.

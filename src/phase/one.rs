@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 
-use super::Phase;
+use super::{Phase, PhaseStep};
 use crate::scalar::Scalar;
 
 /// The dry solid.
@@ -19,5 +19,5 @@ impl<T: Scalar, const D: usize> Phase<T, D> for OnePhase {
     }
 
     #[inline(always)]
-    fn update(&self, _increment: &SMatrix<T, D, D>, _particle: &mut ()) {}
+    fn update(&self, _step: &PhaseStep<'_, T, D>, _particle: &mut ()) {}
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::Phase;
+use super::{Phase, PhaseStep};
 use crate::error::SetupError;
 use crate::scalar::Scalar;
 
@@ -130,10 +130,11 @@ impl<T: Scalar, const D: usize> Phase<T, D> for TwoPhase<T> {
         total
     }
 
-    /// Undrained: the liquid moves with the solid.
     #[inline(always)]
-    fn update(&self, increment: &SMatrix<T, D, D>, particle: &mut PoreLiquid<T, D>) {
-        particle.pressure += self.liquid_bulk_modulus / self.porosity * increment.trace();
+    fn update(&self, step: &PhaseStep<'_, T, D>, particle: &mut PoreLiquid<T, D>) {
+        let n = self.porosity;
+        let volume_rate = (T::one() - n) * step.solid.trace() + n * step.liquid.trace();
+        particle.pressure += self.liquid_bulk_modulus / n * volume_rate;
     }
 
     fn validate(&self) -> Result<(), SetupError> {
@@ -165,18 +166,6 @@ impl<T: Scalar, const D: usize> Phase<T, D> for TwoPhase<T> {
             );
         }
         Ok(())
-    }
-
-    #[inline(always)]
-    fn update_with_flow(
-        &self,
-        solid: &SMatrix<T, D, D>,
-        liquid: &SMatrix<T, D, D>,
-        particle: &mut PoreLiquid<T, D>,
-    ) {
-        let n = self.porosity;
-        let volume_rate = (T::one() - n) * solid.trace() + n * liquid.trace();
-        particle.pressure += self.liquid_bulk_modulus / n * volume_rate;
     }
 
     #[inline(always)]

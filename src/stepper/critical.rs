@@ -12,7 +12,7 @@ use crate::basis::BasisFamily;
 use crate::grid::{Cell, Face};
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, each_span, many_threads};
-use crate::phase::{Drag, Phase};
+use crate::phase::{Drag, Phase, PhaseStep};
 use crate::reconstruction::{Reconstruction, Stresses};
 use crate::scalar::Scalar;
 use crate::tensor::symmetric;
@@ -270,7 +270,8 @@ where
             return stress - particles.stress[p];
         }
         let mut data = particles.phase[p];
-        self.phase.update(&gradient, &mut data);
+        let step = PhaseStep::strain(&gradient, &stress).with_volume(particles.volume[p]);
+        self.phase.update(&step, &mut data);
         self.phase.total_stress(&stress, &data)
             - self.phase.total_stress(&particles.stress[p], &particles.phase[p])
     }
@@ -314,7 +315,8 @@ where
         let along = (0..D).map(|axis| {
             let (mut increment, mut strained) = (nothing, *data);
             increment[(axis, axis)] = strain;
-            phase.update(&increment, &mut strained);
+            let step = PhaseStep::strain(&increment, &self.particles.stress[p]);
+            phase.update(&step.with_volume(self.particles.volume[p]), &mut strained);
             (phase.total_stress(&nothing, &strained) - before)[(axis, axis)] / strain
         });
         along.fold(-T::lit(f64::INFINITY), T::max)

@@ -8,7 +8,7 @@ use crate::grid::Grid;
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
 use crate::particles::{Bins, Material, Particles};
-use crate::phase::Phase;
+use crate::phase::{Phase, PhaseStep};
 use crate::scalar::Scalar;
 use crate::simd::with_features;
 use crate::tensor::determinant;
@@ -85,19 +85,24 @@ fn deform<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>, const C:
     material: Material<'_, T, D, L::Number, P::Particle>,
 ) -> Option<(usize, InvalidState<T>)> {
     let Matter { law, phase } = *matter;
-    if P::FLOWS {
-        let of_both = increments[0].iter().zip(increments[C - 1]);
-        for ((solid, liquid), data) in of_both.zip(&mut *material.phase) {
-            phase.update_with_flow(solid, liquid, data);
-        }
-    } else if P::COUPLED {
-        for (increment, data) in increments[0].iter().zip(&mut *material.phase) {
-            phase.update(increment, data);
-        }
-    }
     law.carry(dt, increments[0], material.stress, material.state);
     let known = law.are_known(material.stress, material.state);
     let sound = !law.large_strain() || stretch(increments[0], material.volume);
+    if P::COUPLED {
+        // Without flow there is one field of increments, that of the solid.
+        let of_both = increments[0].iter().zip(increments[C - 1]);
+        let bodies = material.stress.iter().zip(&*material.volume);
+        for (((solid, liquid), (stress, &volume)), data) in of_both.zip(bodies).zip(&mut *material.phase) {
+            let step = PhaseStep {
+                dt,
+                solid,
+                liquid,
+                stress,
+                volume,
+            };
+            phase.update(&step, data);
+        }
+    }
     let finite = !P::FLOWS || have_pressures(phase, material.phase);
     if known && sound && finite {
         return None;

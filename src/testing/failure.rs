@@ -136,8 +136,6 @@ pub enum Property {
     LiquidMass,
     /// The drag is not negative, and proportional to the volume if the mass is.
     Drag,
-    /// Where the liquid moves with the solid, `update_with_flow` is `update`.
-    Undrained,
     /// Solid and liquid change the pressure by their shares of the volume.
     FlowShares,
     /// Pressure over change of volume is `liquid_stiffness`.
@@ -211,7 +209,6 @@ impl fmt::Display for Property {
             Self::StrainKeepsVelocity => "strain keeps the velocity of the liquid",
             Self::LiquidMass => "the liquid's mass is proportional to the volume",
             Self::Drag => "the drag is proportional to the volume",
-            Self::Undrained => "liquid that moves with the solid is undrained",
             Self::FlowShares => "solid and liquid change the pressure by their shares of the volume",
             Self::LiquidStiffness => "pressure over change of volume is `liquid_stiffness`",
             Self::LiquidEnergy => "the liquid's energy is the work of its pressure",

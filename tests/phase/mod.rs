@@ -9,7 +9,7 @@ use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
 use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
-use materialpoint::phase::{OnePhase, Phase};
+use materialpoint::phase::{OnePhase, Phase, PhaseStep};
 use materialpoint::reconstruction::{Reconstruction, Relaxation, RelaxedTaylor, Shepard, Taylor};
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
 use nalgebra::{SMatrix, vector};
@@ -28,8 +28,8 @@ impl<const D: usize> Phase<f64, D> for LockedWater {
         effective + SMatrix::identity() * *pressure
     }
 
-    fn update(&self, increment: &SMatrix<f64, D, D>, pressure: &mut f64) {
-        *pressure += self.stiffness * increment.trace();
+    fn update(&self, step: &PhaseStep<'_, f64, D>, pressure: &mut f64) {
+        *pressure += self.stiffness * step.solid.trace();
     }
 }
 
@@ -130,4 +130,54 @@ fn a_relaxed_step_takes_a_second_phase_too() {
         difference < 1e-3 * displacement,
         "{difference:e} of {displacement:e}"
     );
+}
+
+/// A phase that notes what it is told: time so far, last stress and volume, and the solid's strain so far.
+#[derive(Clone, Copy, Debug)]
+struct Notes;
+
+impl Phase<f64, 1> for Notes {
+    const COUPLED: bool = true;
+    type Particle = [f64; 4];
+
+    fn total_stress(&self, effective: &SMatrix<f64, 1, 1>, _: &[f64; 4]) -> SMatrix<f64, 1, 1> {
+        *effective
+    }
+
+    fn update(&self, step: &PhaseStep<'_, f64, 1>, notes: &mut [f64; 4]) {
+        assert_eq!(
+            step.solid, step.liquid,
+            "where no liquid flows it goes with the solid"
+        );
+        *notes = [
+            notes[0] + step.dt,
+            step.stress[(0, 0)],
+            step.volume,
+            notes[3] + step.solid.trace(),
+        ];
+    }
+}
+
+/// Stress and volume are those at the end of the step, and the law has seen the same strain.
+#[test]
+fn a_phase_is_told_of_time_stress_and_volume() {
+    let mut stepper = bar(Shepard, 3e6, Notes);
+    let forcing = fixed_ends();
+    let (dt, steps) = (1e-5, 50);
+    for _ in 0..steps {
+        stepper.step(dt, &forcing).unwrap();
+    }
+    let particles = stepper.particles();
+    let notes = particles.phase.iter().enumerate();
+    let mut most = 0.0_f64;
+    for (p, [time, stress, volume, strain]) in notes {
+        assert!((time - f64::from(steps) * dt).abs() < 1e-12, "{time:e}");
+        assert_eq!(
+            (*stress, *volume),
+            (particles.stress[p][(0, 0)], particles.volume[p])
+        );
+        assert!((3e6 * strain - stress).abs() <= 1e-9 * stress.abs() + 1e-6);
+        most = most.max(stress.abs());
+    }
+    assert!(most > 100.0, "the bar is strained: {most:e}");
 }

@@ -1,6 +1,6 @@
 //! Phases.
 
-use materialpoint::phase::{Drag, OnePhase, Phase, PoreLiquid, TwoPhase};
+use materialpoint::phase::{Drag, OnePhase, Phase, PhaseStep, PoreLiquid, TwoPhase};
 use materialpoint::scalar::Scalar;
 use materialpoint::testing::{Failure, PhaseSample, Property, check_phase};
 use nalgebra::{SMatrix, SVector};
@@ -124,7 +124,7 @@ const FLOWING: [(Slip, Property); 23] = [
     (Slip::NegativeMass, Property::LiquidMass),
     (Slip::DragPerVolume, Property::Drag),
     (Slip::DragSign, Property::Drag),
-    (Slip::NoPorosity, Property::Undrained),
+    (Slip::NoPorosity, Property::LiquidStiffness),
     (Slip::SharesSwapped, Property::FlowShares),
     (Slip::LiquidAlone, Property::FlowShares),
     (Slip::Stiffness, Property::LiquidStiffness),
@@ -203,26 +203,16 @@ impl<const D: usize, const COUPLED: bool, const FLOWS: bool> Phase<f64, D> for F
         total
     }
 
-    fn update(&self, increment: &SMatrix<f64, D, D>, particle: &mut PoreLiquid<f64, D>) {
-        self.decays(particle);
-        let n = if self.0 == Slip::NoPorosity { 1.0 } else { POROSITY };
-        particle.pressure += BULK / n * self.volume(increment);
-    }
-
-    fn update_with_flow(
-        &self,
-        solid: &SMatrix<f64, D, D>,
-        liquid: &SMatrix<f64, D, D>,
-        particle: &mut PoreLiquid<f64, D>,
-    ) {
+    fn update(&self, step: &PhaseStep<'_, f64, D>, particle: &mut PoreLiquid<f64, D>) {
         self.decays(particle);
         let share = match self.0 {
             Slip::SharesSwapped => 1.0 - POROSITY,
             Slip::LiquidAlone => 1.0,
             _ => POROSITY,
         };
-        let volume = (1.0 - share) * self.volume(solid) + share * self.volume(liquid);
-        particle.pressure += BULK / POROSITY * volume;
+        let volume = (1.0 - share) * self.volume(step.solid) + share * self.volume(step.liquid);
+        let n = if self.0 == Slip::NoPorosity { 1.0 } else { POROSITY };
+        particle.pressure += BULK / n * volume;
         if self.0 == Slip::Stops {
             particle.velocity = SVector::zeros();
         }
