@@ -567,13 +567,14 @@ fn heat_stiffens_the_plate_against_pressure_and_not_against_shear() {
 /// pushes outwards.
 #[test]
 fn stretching_cools_and_warmth_pushes() {
-    use materialpoint::phase::Phase;
-    use nalgebra::matrix;
+    use materialpoint::phase::{Phase, PhaseStep};
+    use nalgebra::{SMatrix, matrix};
     use thermo_elastic::{
         EXPANSION, HEAT_CAPACITY, TEMPERATURE, ThermoElastic, Warmth, YOUNGS_MODULUS, aluminium,
     };
     let (heat, mut warmth) = (aluminium(1, true), Warmth(0.0));
-    heat.update(&matrix![1e6 / YOUNGS_MODULUS], &mut warmth);
+    let (strain, stress) = (matrix![1e6 / YOUNGS_MODULUS], matrix![1e6]);
+    heat.update(&PhaseStep::strain(&strain, &stress), &mut warmth);
     let expected = -EXPANSION * TEMPERATURE / HEAT_CAPACITY * 1e6;
     assert!((warmth.0 / expected - 1.0).abs() < 1e-14 && (expected + 2.8e-3).abs() < 5e-5);
     let total = heat.total_stress(&matrix![0.0], &Warmth(1.0))[(0, 0)];
@@ -584,7 +585,8 @@ fn stretching_cools_and_warmth_pushes() {
 
     // Shear at constant volume does neither.
     let (heat, mut warmth) = (aluminium(2, true), Warmth(0.0));
-    heat.update(&matrix![1e-5, 3e-5; -2e-5, -1e-5], &mut warmth);
+    let (isochoric, stress) = (matrix![1e-5, 3e-5; -2e-5, -1e-5], SMatrix::zeros());
+    heat.update(&PhaseStep::strain(&isochoric, &stress), &mut warmth);
     assert_eq!(warmth.0, 0.0);
     let cold = ThermoElastic {
         temperature: 0.0,
