@@ -2,8 +2,8 @@
 //!
 //! Between the fit of the stress and that of the densities no particle moves, so both have the same Gram
 //! matrix. With the constant function last in `L D L^T` the columns before it are the factor of the fit whose
-//! mean is given, and all of them that of the free one. Only for cells that clearly determine all functions:
-//! where some are left out the order decides which.
+//! mean is given, and all of them that of the free one. Only for cells that clearly determine all functions,
+//! whatever their order: where some are left out the order decides which.
 
 use nalgebra::SVector;
 
@@ -33,6 +33,24 @@ pub(crate) const fn kept<const NB: usize>() -> usize {
     NB * (NB + 1) / 2 + NB + 1
 }
 
+/// The `m`-th entry on the diagonal of the inverse: one over the square that all other functions leave of the
+/// `m`-th. In no order is less left of it, so that a function that passes by this is kept by every fit.
+#[inline(always)]
+fn inverse_diagonal<T, V: Number<T>, const NB: usize>(lower: &Products<V, NB>, zero: V, m: usize) -> V {
+    // The `m`-th column of the inverse of the triangle.
+    let mut column = [zero; NB];
+    let mut inverse = lower[m][m];
+    for n in m + 1..NB {
+        let mut entry = lower[n][m];
+        for j in m + 1..n {
+            entry = entry + lower[n][j] * column[j];
+        }
+        column[n] = zero - entry;
+        inverse = inverse + entry * entry * lower[n][n];
+    }
+    inverse
+}
+
 impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
     /// Of the Gram matrices `gram` of cells with so many points, if these clearly determine all functions of
     /// all four.
@@ -50,11 +68,9 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
         let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
         let share = k.splat(T::lit(GRAM_SHARE));
         let mut lower = [[zero; NB]; NB];
-        let mut full = one;
         for m in 0..NB {
             let own = function::<NB>(m);
-            let square = gram[own][own];
-            let mut left = square;
+            let mut left = gram[own][own];
             let mut row = [zero; NB];
             for j in 0..m {
                 let other = function::<NB>(j);
@@ -67,9 +83,15 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
                 lower[m][j] = dot * lower[j][j];
                 left = left - lower[m][j] * dot;
             }
-            let least = gram[0][0] * k.splat(tolerance * tolerance * sizes[own] * sizes[own]);
-            full = full * left.above(least) * left.above(square * share);
             lower[m][m] = one / left;
+        }
+        let mut full = one;
+        for m in 0..NB {
+            let own = function::<NB>(m);
+            let inverse = inverse_diagonal(&lower, zero, m);
+            let least = gram[0][0] * k.splat(tolerance * tolerance * sizes[own] * sizes[own]);
+            let enough = one.above(inverse * least) * one.above(inverse * gram[own][own] * share);
+            full = full * lower[m][m].above(zero) * enough;
         }
         let mut with_constant = [gram[0][0]; NB];
         for n in 1..NB {
@@ -156,8 +178,14 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::vector;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::super::basis::taylor_functions;
+    use super::super::four::factorise;
     use super::*;
-    use crate::simd::{Four, Plain};
+    use crate::simd::{Four, Lanes, Plain};
     use crate::taylor::{BatchSums, taylor_lanes};
 
     /// Sums over points that lie in no order, another count in each cell.
@@ -215,5 +243,53 @@ mod tests {
         let mut kept = vec![[1.0; LANES]; super::kept::<6>()];
         SharedFactor::<Four<f64>, 6>::keep::<f64, _>(None, Plain, &mut kept);
         assert!(SharedFactor::<Four<f64>, 6>::kept::<f64, _>(Plain, &kept).is_none());
+    }
+
+    /// Whether the factor is shared, and whether the free fit and the one of known mean keep all functions.
+    fn decisions<const NB: usize>(points: &[SVector<f64, 2>], tolerance: f64) -> (bool, [bool; 2]) {
+        let zero = Lanes::<f64>::splat(Plain, 0.0);
+        let mut gram = [[zero; NB]; NB];
+        for point in points {
+            let psi: SVector<f64, NB> = taylor_functions(point);
+            for i in 0..NB {
+                for j in 0..=i {
+                    gram[i][j] = gram[i][j] + Lanes::<f64>::splat(Plain, psi[i] * psi[j]);
+                }
+            }
+        }
+        let counts = [points.len(); LANES];
+        let shared = SharedFactor::new::<f64, Plain, 2>(Plain, &gram, &counts, tolerance);
+        let full = [0, 1].map(|first| {
+            let found = factorise::<f64, Plain, 2, NB>(Plain, &gram, first, &counts, tolerance);
+            found.functions == [NB - first; LANES] && found.hard == [false; LANES]
+        });
+        (shared.is_some(), full)
+    }
+
+    proptest! {
+        /// Points that crowd together, as where a surface cuts a cell: which functions they determine depends
+        /// on the order, and what is shared must be right in both.
+        #[test]
+        fn a_shared_factor_is_of_functions_that_both_fits_keep(
+            points in vec((-1.0..1.0_f64, -1.0..1.0_f64), 3..16),
+            size in (0.02..1.0_f64, 0.02..1.0_f64),
+            middle in (-0.9..0.9_f64, -0.9..0.9_f64),
+        ) {
+            let placed = points.iter().map(|(x, y)| vector![middle.0 + size.0 * x, middle.1 + size.1 * y]);
+            let points: Vec<_> = placed.map(|x: SVector<f64, 2>| x.map(|x| x.clamp(-1.0, 1.0))).collect();
+            for tolerance in [1e-3, 0.03, 0.1, 0.3] {
+                let found = [decisions::<3>(&points, tolerance), decisions::<6>(&points, tolerance)];
+                for (shared, full) in found {
+                    prop_assert!(!shared || full == [true; 2], "{full:?}, {tolerance}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_filled_cell_shares_its_factor() {
+        let at = |n: usize| (n as f64 - 1.0) * 2.0 / 3.0;
+        let points: Vec<_> = (0..9).map(|n| vector![at(n % 3), at(n / 3)]).collect();
+        assert!(decisions::<3>(&points, 0.1).0 && decisions::<6>(&points, 0.1).0);
     }
 }
