@@ -5,10 +5,10 @@
 //! ([`Lanes`], [`Packs`]) that makes *packs* of numbers: [`Plain`] makes them of any scalar, dual numbers for
 //! instance, [`One`] is a single number, and for `f64` and `f32` there are the vectors of the processor,
 //! whose token is a proof that the processor has them. It is asked for once a sweep, at run time
-//! ([`dispatch`]): no build flag is wanted of anyone.
+//! (`dispatch`): no build flag is wanted of anyone.
 //!
 //! Everything inside a sweep must be inlined into it, closures too (`#[inline(always)] |a| ..`): what is not
-//! loses the instruction set, and with it a factor of three to six. [`each`] stands in for
+//! loses the instruction set, and with it a factor of three to six. `each` stands in for
 //! `std::array::from_fn`, which is not certain to be. What must stay a function of its own is run by
 //! [`Lanes::run`].
 
