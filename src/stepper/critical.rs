@@ -232,13 +232,13 @@ where
                 *rate = self.stress_rate(p, &mut state);
             }
         });
-        let by_four = self.by_four();
+        let batched = self.batched();
         let fitted = Fitted {
             basis: &self.basis,
             cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
             reconstruction: &mut self.reconstruction,
             spans: &mut self.spans,
-            by_four,
+            batched,
         };
         let force = Targets::<T, D, 0, 0, 1>::of_forces([&mut self.dofs.force]);
         fitted.forces::<1>(Stresses(&rates), force);

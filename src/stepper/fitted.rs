@@ -27,7 +27,7 @@ pub(super) struct Fitted<'a, 'c, T: Scalar, const D: usize, B, R> {
     pub(super) cloud: Cloud<'c, T, D>,
     pub(super) spans: &'a mut Spans<T, D>,
     /// Whether four cells are fitted at a time.
-    pub(super) by_four: bool,
+    pub(super) batched: bool,
 }
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> Fitted<'_, '_, T, D, B, R> {
@@ -87,19 +87,19 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         let (span, parallel) = share::<D>(spans, occupied.len(), lengths[1]);
         reduced.fill(0);
         let is_fresh = *fresh;
-        *fresh |= self.by_four && !I::CONSERVED;
+        *fresh |= self.batched && !I::CONSERVED;
         let work = (
             occupied,
             store.windows(spans, &mut targets),
             PerSpan(&mut reduced[..]),
-            room::<T, D, R>(kept, occupied.len(), self.by_four),
+            room::<T, D, R>(kept, occupied.len(), self.batched),
         );
-        let by_four = self.by_four;
+        let batched = self.batched;
         each_span(parallel, span, work, &|place, (cells, windows, reduced, kept)| {
             // By value: references to the slices would be read anew for each DOF.
             let mut sums = InSpan::new(windows);
             let cells = place..place + cells.len();
-            if const { transfer::fit::<T, D, B, R>() } && by_four {
+            if const { transfer::fit::<T, D, B, R>() } && batched {
                 let fits = Fits {
                     moving: basis,
                     reconstruction,
@@ -198,8 +198,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             None => Windows::default(),
         });
         let of_momenta = super::sums::windows(spans, vectors, targets.vectors.each_mut().map(|t| &mut **t));
-        let by_four = self.by_four;
-        let kept = room::<T, D, R>(kept, occupied.len(), by_four);
+        let batched = self.batched;
+        let kept = room::<T, D, R>(kept, occupied.len(), batched);
         let work = (occupied, of_rows, of_momenta, kept);
         each_span(parallel, span, work, &|place, (cells, rows, momenta, kept)| {
             let mut first = 0;
@@ -215,7 +215,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             let mut matrix = move |q: usize, i: usize, j: usize, mass: T| {
                 add_to_row(rows[q], i - first, j - first, half_band, mass);
             };
-            if const { transfer::fit::<T, D, B, R>() } && by_four {
+            if const { transfer::fit::<T, D, B, R>() } && batched {
                 let fits = Fits {
                     moving: basis,
                     reconstruction,
@@ -274,7 +274,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                 matrix.add(i, j, mass);
             }
         };
-        if const { transfer::fit::<T, D, B, R>() } && self.by_four {
+        if const { transfer::fit::<T, D, B, R>() } && self.batched {
             let fits = Fits {
                 moving: basis,
                 reconstruction: &*self.reconstruction,
@@ -304,9 +304,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
 fn room<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     kept: &mut Vec<[T; LANES]>,
     cells: usize,
-    by_four: bool,
+    batched: bool,
 ) -> Groups<'_, [T; LANES]> {
-    let groups = if by_four { cells.div_ceil(LANES) } else { 0 };
+    let groups = if batched { cells.div_ceil(LANES) } else { 0 };
     // What was kept stays where the cells are the same.
     kept.resize(groups * R::KEPT, [T::zero(); LANES]);
     Groups {

@@ -294,7 +294,7 @@ where
         let dofs = self.dofs.mass.len();
         let each = if P::FLOWS { [SCALARS, VECTORS] } else { [1, 1] };
         self.spans.allocate(each, R::CELLWISE, dofs);
-        if self.by_four() {
+        if self.batched() {
             let cells = self.particles.len().min(self.grid.cell_count());
             self.spans.kept.reserve_exact(cells.div_ceil(LANES) * R::KEPT);
         }
@@ -402,7 +402,7 @@ where
         if fits {
             self.cut_cells();
         }
-        if self.by_four() && !R::NON_LOCAL {
+        if self.batched() && !R::NON_LOCAL {
             return;
         }
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
@@ -414,7 +414,7 @@ where
     }
 
     /// Whether fits are made and integrated for four cells at a time, so that nothing of them need be kept.
-    fn by_four(&self) -> bool {
+    fn batched(&self) -> bool {
         let can = const { transfer::fit::<T, D, B, R>() };
         can && packs_serve::<T>() && (1..=transfer::MOST_POINTS).contains(&self.reconstruction.line().count())
     }

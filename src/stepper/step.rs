@@ -151,13 +151,13 @@ where
     #[inline(never)]
     fn integrate_forces(&mut self, even: UniformLoad<T>) {
         let (effective, data, phase) = (&self.particles.stress[..], &self.particles.phase[..], &self.phase);
-        let by_four = self.by_four();
+        let batched = self.batched();
         let fitted = Fitted {
             basis: &self.basis,
             cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
             reconstruction: &mut self.reconstruction,
             spans: &mut self.spans,
-            by_four,
+            batched,
         };
         let forces = [&mut self.dofs.force[..], &mut self.liquid.force[..]];
         // Three closures rather than one with branches: what a closure holds costs instructions even where it
@@ -174,7 +174,7 @@ where
                 Targets::<T, D, 0, 0, 1>::of_forces(first(forces)),
             );
         }
-        if by_four && !R::NON_LOCAL {
+        if batched && !R::NON_LOCAL {
             let reduced = self.spans.reduced.iter().sum();
             self.diagnostics.record_reduced(reduced);
         }
@@ -285,13 +285,13 @@ where
     /// Momenta of the DOFs from fits of densities and, if `masses`, what divides them.
     pub(super) fn fit_momenta(&mut self, masses: bool) {
         let lumped = self.mass == MassModel::FittedLumped;
-        let by_four = self.by_four();
+        let batched = self.batched();
         let fitted = Fitted {
             basis: &self.basis,
             cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
             reconstruction: &mut self.reconstruction,
             spans: &mut self.spans,
-            by_four,
+            batched,
         };
         let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
         if const { P::FLOWS } {

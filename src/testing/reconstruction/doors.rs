@@ -29,7 +29,7 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     }
     same(Property::CellsStreamTheSame, cloud, whole.clone(), cells, most)?;
     if R::BATCHED {
-        let four = by_four(reconstruction, cloud, false, &uneven);
+        let four = batched(reconstruction, cloud, false, &uneven);
         same(Property::FourStreamTheSame, cloud, whole, four, most)?;
     }
     if R::AMOUNTS_AT_PARTICLES {
@@ -55,7 +55,7 @@ fn conserved<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     let most = whole.iter().fold(T::zero(), largest) * T::lit(4.0);
     same(Property::CellsStreamTheSame, cloud, whole.clone(), cells, most)?;
     if R::BATCHED {
-        let four = by_four(reconstruction, cloud, true, &density);
+        let four = batched(reconstruction, cloud, true, &density);
         same(Property::FourStreamTheSame, cloud, whole, four, most)?;
     }
     Ok(())
@@ -73,7 +73,7 @@ fn keep<T: Scalar, const D: usize>(points: &mut Vec<Streamed<T, D>>) -> impl FnM
 
 /// What four cells at once stream, and the cells that cannot be one by one; nothing if the reconstruction has
 /// no line of points as it is set up, and then a step does not ask for four either.
-fn by_four<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
+fn batched<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     reconstruction: &R,
     cloud: &Cloud<'_, T, D>,
     conserve: bool,
