@@ -749,6 +749,35 @@ fn a_part_of_the_page_on_long_runs_is_written_anew() {
     }
 }
 
+/// The picture of the main command has the errors that the page's tables have.
+#[test]
+fn the_picture_of_the_bar_and_its_tables_agree() {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
+    let read = |file: &str| std::fs::read_to_string(docs.join(file)).unwrap();
+    let (page, picture) = (read("verification/one-phase.md"), read("pictures/fields.svg"));
+    let (_, section) = page.split_once("## Vibrating bar, large strain").unwrap();
+    let texts: Vec<&str> = picture
+        .split("</text>")
+        .filter_map(|text| text.rsplit('>').next())
+        .collect();
+    let mut methods = 0;
+    for pair in texts.windows(2) {
+        let Some(drawn) = pair[1].strip_prefix("relative L2 error ") else {
+            continue;
+        };
+        let row = format!("| {} | ", pair[0]);
+        let (_, told) = section.split_once(&row).unwrap_or_else(|| panic!("no row {row}"));
+        let told = told.split(" |").next().unwrap().trim_matches('*');
+        let [drawn, told] = [drawn, told].map(|number| number.parse::<f64>().unwrap());
+        assert!(
+            (drawn / told - 1.0).abs() < 5e-3,
+            "{row}: {drawn:e} in the picture"
+        );
+        methods += 1;
+    }
+    assert_eq!(methods, 12);
+}
+
 /// The pages name only pictures that are there, none too heavy for the repository.
 #[test]
 fn the_pages_on_long_runs_and_on_stability_have_their_pictures() {
