@@ -91,16 +91,10 @@ impl MethodVisitor<f64> for Build {
             v[0] = VELOCITY * WAVE_SPEED * (PI * x[0] / length).sin();
         }
         let moduli = Moduli::uniaxial(DENSITY * WAVE_SPEED * WAVE_SPEED).expect("a positive modulus");
-        let stepper = Stepper::new(Setup {
-            grid,
-            basis,
-            reconstruction,
-            law: Hill { moduli },
-            phase: OnePhase,
-            velocity_mass: VelocityMass::Consistent,
-            particles,
-            surface: Vec::new(),
-        });
+        let stepper = Stepper::new(
+            Setup::new(grid, basis, reconstruction, Hill { moduli }, OnePhase, particles)
+                .with_velocity_mass(VelocityMass::Consistent),
+        );
         Box::new(stepper.expect("a valid setup"))
     }
 }

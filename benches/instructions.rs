@@ -37,16 +37,10 @@ impl MethodVisitor<f64> for Build {
             v[0] = 0.8 * (std::f64::consts::PI * x[0]).sin();
         }
         let moduli = Moduli::uniaxial(4e4).expect("a positive modulus");
-        let stepper = Stepper::new(Setup {
-            grid,
-            basis,
-            reconstruction,
-            law: Hill { moduli },
-            phase: OnePhase,
-            velocity_mass: VelocityMass::Consistent,
-            particles,
-            surface: Vec::new(),
-        });
+        let stepper = Stepper::new(
+            Setup::new(grid, basis, reconstruction, Hill { moduli }, OnePhase, particles)
+                .with_velocity_mass(VelocityMass::Consistent),
+        );
         Box::new(stepper.expect("a valid setup"))
     }
 }

@@ -94,16 +94,18 @@ where
         loaded: true,
     };
     let moduli = Moduli::uniaxial(1e7).expect("a positive modulus");
-    let stepper = Stepper::new(Setup {
-        grid,
-        basis,
-        reconstruction,
-        law: LinearElastic { moduli },
-        phase,
-        velocity_mass: VelocityMass::Consistent,
-        particles,
-        surface: vec![surface],
-    });
+    let stepper = Stepper::new(
+        Setup::new(
+            grid,
+            basis,
+            reconstruction,
+            LinearElastic { moduli },
+            phase,
+            particles,
+        )
+        .with_velocity_mass(VelocityMass::Consistent)
+        .with_surface(vec![surface]),
+    );
     Box::new(stepper.expect("a valid setup"))
 }
 

@@ -12,7 +12,6 @@ use std::error::Error;
 use materialpoint::basis::Linear;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{AnyLaw, ConstitutiveLaw, ElasticStretch, Moduli, hooke_strain};
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Shepard;
@@ -539,16 +538,7 @@ pub fn undrained(ratio: f64, steps: u32) -> Result<Undrained, Box<dyn Error>> {
     particles.stress.fill(Matrix2::identity() * stress);
     particles.state = law.at_rest(particles.len());
     particles.start_under_stress(&law, |_, _| Some(stress))?;
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis: Linear,
-        reconstruction: Shepard,
-        law,
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
-        particles,
-        surface: Vec::new(),
-    })?;
+    let mut stepper = Stepper::new(Setup::new(grid, Linear, Shepard, law, OnePhase, particles))?;
     let face = |side| Face { axis: 1, side };
     let top = FaceCondition::moving(vector![shear, 0.0], vector![0.0, 0.0]);
     let forcing = Forcing::none()

@@ -80,18 +80,19 @@ where
     for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
         v[0] = T::lit(VELOCITY) * (x[0] * T::lit(PI / LENGTH)).sin();
     }
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis,
-        reconstruction,
-        law: LinearElastic {
-            moduli: Moduli::uniaxial(modulus)?,
-        },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Consistent,
-        particles,
-        surface: Vec::new(),
-    })?;
+    let mut stepper = Stepper::new(
+        Setup::new(
+            grid,
+            basis,
+            reconstruction,
+            LinearElastic {
+                moduli: Moduli::uniaxial(modulus)?,
+            },
+            OnePhase,
+            particles,
+        )
+        .with_velocity_mass(VelocityMass::Consistent),
+    )?;
     let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
     let forcing = ends
         .into_iter()

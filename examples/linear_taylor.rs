@@ -276,18 +276,19 @@ where
     for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
         v[0] = velocity * (PI * x[0] / LENGTH).sin();
     }
-    Ok(Stepper::new(Setup {
-        grid,
-        basis: BSpline::<2>,
-        reconstruction,
-        law: Logarithmic {
-            moduli: Moduli::uniaxial(MODULUS)?,
-        },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Consistent,
-        particles,
-        surface: Vec::new(),
-    })?)
+    Ok(Stepper::new(
+        Setup::new(
+            grid,
+            BSpline::<2>,
+            reconstruction,
+            Logarithmic {
+                moduli: Moduli::uniaxial(MODULUS)?,
+            },
+            OnePhase,
+            particles,
+        )
+        .with_velocity_mass(VelocityMass::Consistent),
+    )?)
 }
 
 /// Twice the time until the bar, started undeformed, comes back, which it should well before the given steps

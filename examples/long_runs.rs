@@ -257,6 +257,7 @@ fn reason(error: &StepError) -> String {
         StepError::Invalid { name, value, .. } => format!("{name} {value:.1e}"),
         StepError::StepSize { .. } => "step".into(),
         StepError::Friction { .. }
+        | StepError::FrictionFromGrid { .. }
         | StepError::FrictionWithFlow { .. }
         | StepError::PressureWithoutFlow { .. }
         | StepError::RubbingAcross { .. }

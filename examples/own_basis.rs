@@ -8,7 +8,6 @@ use std::f64::consts::PI;
 use materialpoint::basis::{AxisBasis, AxisCell, Functions};
 use materialpoint::grid::Grid;
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Taylor;
@@ -51,18 +50,16 @@ pub fn run() -> Result<f64, Box<dyn Error>> {
     for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
         v[0] = 0.01 * (PI * x[0] / length).cos();
     }
-    let mut stepper = Stepper::new(Setup {
+    let mut stepper = Stepper::new(Setup::new(
         grid,
-        basis: UniformQuadratic,
-        reconstruction: Taylor::<f64, 1, 3>::new(),
-        law: LinearElastic {
+        UniformQuadratic,
+        Taylor::<f64, 1, 3>::new(),
+        LinearElastic {
             moduli: Moduli::uniaxial(modulus)?,
         },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
+        OnePhase,
         particles,
-        surface: Vec::new(),
-    })?;
+    ))?;
     let period = 2.0 * length / (modulus / density).sqrt();
     let (start, steps) = (stepper.energy().total(), 1000);
     let mut highest = 0.0_f64;

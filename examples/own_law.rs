@@ -10,7 +10,6 @@ use std::error::Error;
 use materialpoint::basis::BSpline;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::ConstitutiveLaw;
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Shepard;
@@ -75,17 +74,16 @@ pub fn run() -> Result<f64, Box<dyn Error>> {
         reach: 0.5,
         loaded: true,
     }];
-    let mut stepper = Stepper::new(Setup {
+    // Published TLS does not bear a free end that moves into an empty cell; plain MPM does.
+    let setup = Setup::new(
         grid,
-        basis: BSpline::<2>,
-        // Published TLS does not bear a free end that moves into an empty cell; plain MPM does.
-        reconstruction: Shepard,
-        law: Logarithmic { modulus },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
+        BSpline::<2>,
+        Shepard,
+        Logarithmic { modulus },
+        OnePhase,
         particles,
-        surface,
-    })?;
+    );
+    let mut stepper = Stepper::new(setup.with_surface(surface))?;
     let pull = FaceCondition::Traction(vector![0.01 * modulus]);
     let forcing = Forcing::none()
         .with_face(face(Side::Min), FaceCondition::fixed())

@@ -139,18 +139,19 @@ where
 {
     let grid = Grid::new(vector![0.0], vector![HEIGHT], [50])?;
     let points = lattice(&grid, grid.min(), grid.max(), [20]);
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis,
-        reconstruction,
-        law: Hill {
-            moduli: Moduli::uniaxial(YOUNGS_MODULUS)?,
-        },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Consistent,
-        particles: Particles::at_rest(&points, DENSITY),
-        surface: Vec::new(),
-    })?;
+    let mut stepper = Stepper::new(
+        Setup::new(
+            grid,
+            basis,
+            reconstruction,
+            Hill {
+                moduli: Moduli::uniaxial(YOUNGS_MODULUS)?,
+            },
+            OnePhase,
+            Particles::at_rest(&points, DENSITY),
+        )
+        .with_velocity_mass(VelocityMass::Consistent),
+    )?;
     let base = Face {
         axis: 0,
         side: Side::Min,

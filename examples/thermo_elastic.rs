@@ -171,18 +171,17 @@ where
 {
     let (phase, wave) = (aluminium(1, couples), PI / LENGTH);
     let modulus = YOUNGS_MODULUS + phase.stiffening();
-    let setup = Setup {
-        grid: Grid::new(vector![0.0], vector![LENGTH], [cells])?,
-        basis: Linear,
+    let setup = Setup::new(
+        Grid::new(vector![0.0], vector![LENGTH], [cells])?,
+        Linear,
         reconstruction,
-        law: LinearElastic {
+        LinearElastic {
             moduli: Moduli::uniaxial(YOUNGS_MODULUS)?,
         },
         phase,
-        velocity_mass: VelocityMass::Consistent,
-        particles: Particles::default(),
-        surface: Vec::new(),
-    };
+        Particles::default(),
+    )
+    .with_velocity_mass(VelocityMass::Consistent);
     let frequency = wave * (modulus / DENSITY).sqrt();
     swing(setup, |x| vector![(wave * x[0]).sin()], frequency)
 }
@@ -199,16 +198,15 @@ where
         Mode::Pressure => (moduli.p_wave() + phase.stiffening(), 1.0),
         Mode::Shear => (moduli.mu, -1.0),
     };
-    let setup = Setup {
-        grid: Grid::new(vector![0.0, 0.0], vector![LENGTH, LENGTH], [cells, cells])?,
-        basis: Linear,
+    let setup = Setup::new(
+        Grid::new(vector![0.0, 0.0], vector![LENGTH, LENGTH], [cells, cells])?,
+        Linear,
         reconstruction,
-        law: LinearElastic { moduli },
+        LinearElastic { moduli },
         phase,
-        velocity_mass: VelocityMass::Consistent,
-        particles: Particles::default(),
-        surface: Vec::new(),
-    };
+        Particles::default(),
+    )
+    .with_velocity_mass(VelocityMass::Consistent);
     let shape = |x: &SVector<f64, 2>| {
         let ([sx, sy], [cx, cy]) = (
             [x[0], x[1]].map(|x| (wave * x).sin()),

@@ -29,18 +29,12 @@ pub fn run() -> Result<f64, Box<dyn Error>> {
     }
 
     // Basis, reconstruction and law are types: the step is compiled for this choice.
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis: BSpline::<2>,
-        reconstruction: Taylor::<f64, 1, 3>::new(),
-        law: LinearElastic {
-            moduli: Moduli::uniaxial(youngs_modulus)?,
-        },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Consistent,
-        particles,
-        surface: Vec::new(),
-    })?;
+    let (basis, fits) = (BSpline::<2>, Taylor::<f64, 1, 3>::new());
+    let law = LinearElastic {
+        moduli: Moduli::uniaxial(youngs_modulus)?,
+    };
+    let setup = Setup::new(grid, basis, fits, law, OnePhase, particles);
+    let mut stepper = Stepper::new(setup.with_velocity_mass(VelocityMass::Consistent))?;
     let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
     let forcing = ends
         .into_iter()

@@ -57,6 +57,12 @@ pub enum SetupError {
         "relaxed Taylor least squares know one phase only beyond one axis so far; with a liquid that flows use Shepard or Taylor"
     )]
     OnePhaseOnly,
+    /// A transfer from the grid with what it does not serve.
+    #[error("a transfer that gives particles their velocities from the grid needs {reason}")]
+    FromGrid {
+        /// What it needs, and why.
+        reason: &'static str,
+    },
     /// A basis whose functions bend within a cell.
     #[error(
         "the basis is no polynomial of degree {degree} along axis {axis} in cell {cell}: beyond one axis relaxed Taylor least \
@@ -168,6 +174,15 @@ pub enum StepError {
          held or free"
     )]
     FrictionWithFlow {
+        /// The face.
+        face: Face,
+    },
+    /// Friction at a face, with particles that take their velocities from the grid.
+    #[error(
+        "the face {face} is to rub, but particles take their velocities from the grid; with such a transfer let it \
+         be held or free, or take FLIP"
+    )]
+    FrictionFromGrid {
         /// The face.
         face: Face,
     },

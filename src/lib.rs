@@ -24,7 +24,6 @@
 //! use materialpoint::basis::BSpline;
 //! use materialpoint::grid::Grid;
 //! use materialpoint::law::{Moduli, NeoHookean};
-//! use materialpoint::mass::VelocityMass;
 //! use materialpoint::particles::{Particles, lattice};
 //! use materialpoint::phase::OnePhase;
 //! use materialpoint::reconstruction::Taylor;
@@ -33,16 +32,10 @@
 //!
 //! let grid = Grid::new(vector![0.0, 0.0], vector![1.0, 2.0], [10, 20])?;
 //! let points = lattice(&grid, &vector![0.2, 1.0], &vector![0.6, 1.4], [3, 3]);
-//! let mut stepper = Stepper::new(Setup {
-//!     grid,
-//!     basis: BSpline::<2>,
-//!     reconstruction: Taylor::<f64, 2, 6>::new(),
-//!     law: NeoHookean { moduli: Moduli::from_young(1e5, 0.3)? },
-//!     phase: OnePhase,
-//!     velocity_mass: VelocityMass::Lumped,
-//!     particles: Particles::at_rest(&points, 1e3),
-//!     surface: Vec::new(),
-//! })?;
+//! let particles = Particles::at_rest(&points, 1e3);
+//! let law = NeoHookean { moduli: Moduli::from_young(1e5, 0.3)? };
+//! let fits = Taylor::<f64, 2, 6>::new();
+//! let mut stepper = Stepper::new(Setup::new(grid, BSpline::<2>, fits, law, OnePhase, particles))?;
 //! let gravity = Forcing::none().with_body_force(vector![0.0, -9.81]);
 //! for _ in 0..100 {
 //!     stepper.step(1e-4, &gravity)?;
@@ -86,4 +79,4 @@ pub mod stepper;
 pub mod taylor;
 pub mod tensor;
 pub mod testing;
-mod transfer;
+pub mod transfer;

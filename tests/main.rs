@@ -14,4 +14,5 @@ mod laws;
 mod phase;
 mod scenes;
 mod space;
+mod transfer;
 mod two_phase;

@@ -94,16 +94,15 @@ impl Body {
         for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
             *v = velocity(x);
         }
-        let setup = Setup {
-            grid: self.grid(),
-            basis: BSpline::<2>,
+        let setup = Setup::new(
+            self.grid(),
+            BSpline::<2>,
             reconstruction,
             law,
-            phase: OnePhase,
-            velocity_mass: mass,
+            OnePhase,
             particles,
-            surface: Vec::new(),
-        };
+        )
+        .with_velocity_mass(mass);
         Box::new(Stepper::new(setup).expect("a valid setup"))
     }
 }

@@ -58,16 +58,10 @@ impl<T: Scalar> MethodVisitor<T> for Layout {
             v[0] = T::lit(velocity(x[0].primal()));
         }
         let moduli = Moduli::uniaxial(T::lit(MODULUS)).expect("a positive modulus");
-        let stepper = Stepper::new(Setup {
-            grid,
-            basis,
-            reconstruction,
-            law: Hill { moduli },
-            phase: OnePhase,
-            velocity_mass: VelocityMass::Consistent,
-            particles,
-            surface: Vec::new(),
-        });
+        let stepper = Stepper::new(
+            Setup::new(grid, basis, reconstruction, Hill { moduli }, OnePhase, particles)
+                .with_velocity_mass(VelocityMass::Consistent),
+        );
         Box::new(stepper.expect("a valid setup"))
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use super::BasisFamily;
-use crate::grid::Grid;
+use crate::grid::{Cell, Grid, Window};
 use crate::scalar::Scalar;
 
 /// The field of a basis that agrees with `N` given quantities at every [`BasisFamily::interpolation_point`]:
@@ -51,6 +51,43 @@ impl<T: Scalar, const N: usize> Interpolant<T, N> {
         }
         sum
     }
+}
+
+/// Where the DOFs of the whole grid lie along `axis` (m): the places `x_i` with `sum_i phi_i x_i = x`. Nodes of
+/// hats, Greville abscissae of splines, and for functions of another kind what they say themselves. `None` if
+/// there are none: then the functions do not reproduce linear ones, or are no products along the axes.
+pub(crate) fn places_along<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    basis: &B,
+    grid: &Grid<T, D>,
+    axis: usize,
+) -> Option<Vec<T>> {
+    let grid = &grid.clone().with_window(Window::whole(grid.cells()));
+    let shape = basis.dofs(grid);
+    let stride: usize = shape[..axis].iter().product();
+    let middle: Cell<D> = std::array::from_fn(|a| grid.cells()[a] as u32 / 2);
+    // Along a line through the grid's middle the functions of the other axes add up to one.
+    let values = |along: T, f: &mut dyn FnMut(usize, T)| {
+        let mut x = grid.centre(&middle);
+        x[axis] = along;
+        if let Some(cell) = grid.locate(&x) {
+            basis.for_each(grid, &cell, &x, |dof, phi, _| f(dof / stride % shape[axis], phi));
+        }
+    };
+    let mut system = Collocation::<T, 1>::new(shape[axis], basis.reach().min(shape[axis] - 1));
+    for n in 0..shape[axis] {
+        let x = basis.interpolation_point(grid, n * stride)[axis];
+        system.right.push(SVector::repeat(x));
+        values(x, &mut |j, phi| system.add(n, j, phi));
+    }
+    let places: Vec<T> = system.solve().iter().map(|x| x[0]).collect();
+    let size = grid.cell_size()[axis];
+    let reproduces = |cell: usize| {
+        let x = grid.edge(axis, cell) + size * T::lit(0.3);
+        let mut sum = T::zero();
+        values(x, &mut |j, phi| sum += places[j] * phi);
+        (sum - x).abs() <= T::default_epsilon().sqrt() * size
+    };
+    (0..grid.cells()[axis]).all(reproduces).then_some(places)
 }
 
 /// A banded system of equations, one for each interpolation point. Its matrix is totally positive, or a

@@ -12,6 +12,7 @@ pub mod tensor;
 pub use bspline::BSpline;
 pub use dual_domain::DualDomain;
 pub use interpolant::Interpolant;
+pub(crate) use interpolant::places_along;
 pub use linear::Linear;
 pub(crate) use tensor::MOST_WIDTH;
 pub use tensor::{AxisBasis, AxisCell, Factors, Functions};

@@ -35,14 +35,16 @@ use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, many_threa
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Bound (1/m2) of the largest eigenvalue of the scheme's inverse mass times stiffness for waves of 1
     /// m/s, with the particles where they are and the faces held that `forcing` holds: `4 / h^2` for linear

@@ -16,6 +16,7 @@ use crate::phase::{Drag, Phase, PhaseStep};
 use crate::reconstruction::{Reconstruction, Stresses};
 use crate::scalar::Scalar;
 use crate::tensor::symmetric;
+use crate::transfer::Transfer;
 
 /// What limits a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -49,13 +50,14 @@ const MOST_ITERATIONS: usize = 400;
 /// Particles on which a stiffness is found that nothing bounds: less than a second's work in space.
 const SAMPLE: usize = 4096;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D> + Clone,
     L: LawSweep<T, D> + Clone,
     P: Phase<T, D> + Clone,
+    X: Transfer<T, D>,
 {
     /// Largest step (s) at which the linearised scheme does not grow, for the particles where they are.
     ///
@@ -145,16 +147,17 @@ where
             }
             Err(_) => false,
         });
-        let setup = Setup {
-            grid: self.grid.clone(),
-            basis: self.basis.clone(),
-            reconstruction: self.reconstruction.clone(),
-            law: self.law.clone(),
-            phase: self.phase.clone(),
-            velocity_mass: self.velocity_mass,
-            particles: self.particles.picked(&numbers, self.law.numbers()),
-            surface,
-        };
+        let setup = Setup::new(
+            self.grid.clone(),
+            self.basis.clone(),
+            self.reconstruction.clone(),
+            self.law.clone(),
+            self.phase.clone(),
+            self.particles.picked(&numbers, self.law.numbers()),
+        )
+        .with_transfer(self.transfer.clone())
+        .with_velocity_mass(self.velocity_mass)
+        .with_surface(surface);
         Self::new(setup).ok()
     }
 
@@ -277,13 +280,14 @@ where
     }
 }
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Largest speed (m/s) of a wave through the solid.
     fn largest_wave_speed(&self) -> T {

@@ -12,6 +12,7 @@ use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::transfer::Momentum;
+use crate::transfer::Transfer;
 
 /// Largest errors, over all steps, of the mapped DOF totals against the particle totals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,13 +167,14 @@ impl<T: Scalar> Conservation<T> {
 /// Particles whose energy is asked for at once.
 const BLOCK: usize = 128;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Kinetic and strain energy of the particles as they are, the liquid's included: the kinetic one half a
     /// step earlier than the strain energy. [`Stepper::step_and_measure`] has both at one time.

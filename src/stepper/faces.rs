@@ -10,6 +10,7 @@ use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 
 /// Of each face, in the order of [`Face::all`], the DOFs that a wall holds, and one that has a value there
 /// all the same.
@@ -64,13 +65,14 @@ fn left_out<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     found
 }
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Refuses walls that the basis would let slip.
     pub(super) fn walls_can_be_held(&self, forcing: &Forcing<T, D>) -> Result<(), StepError> {

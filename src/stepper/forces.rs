@@ -12,7 +12,7 @@ use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::transfer::{for_values, sum_pairs, sums_apply};
+use crate::transfer::{Transfer, for_values, sum_pairs, sums_apply};
 
 /// In one dimension: share of its mass that a DOF's diagonal must hold to be solved for with its neighbours.
 /// The share is the mean value of its function over the particles: 2/3 in a full linear cell, nothing for a
@@ -20,13 +20,14 @@ use crate::transfer::{for_values, sum_pairs, sums_apply};
 /// particle's whole acceleration, one over the function's value times as large, or round-off so magnified.
 pub(super) const WEAK: f64 = 0.3;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// `M_ij = sum_p m_p phi_i phi_j`, weak DOFs lumped or, beyond one dimension, tied; of both phases and
     /// the drag with a liquid that flows.

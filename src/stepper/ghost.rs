@@ -9,19 +9,21 @@ use crate::particles::{Bins, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Filling, Reconstruction};
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 
 /// Strength of the tie, as a share of what the jump would change the kinetic energy of a full cell by.
 /// Between 0.2 and 1 the energy of a spinning disc does not differ; weaker ones bear free sides for a shorter
 /// time, stronger ones take more iterations.
 const SHARE: f64 = 0.3;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Puts a penalty on the jumps across those faces between occupied cells at which one of them is not
     /// full, beyond one dimension.

@@ -6,6 +6,7 @@ use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 
 /// What the law knows of each particle besides its stress, in the order in which the particles were given; an
 /// array is empty where the law does not know it.
@@ -18,13 +19,14 @@ pub struct MaterialFields {
     pub plastic_strain: Vec<f64>,
 }
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// What the law knows of the particles besides their stress.
     pub fn material_fields(&self) -> MaterialFields {

@@ -36,6 +36,7 @@ mod faces;
 mod fitted;
 mod forces;
 mod forcing;
+mod from_grid;
 mod ghost;
 mod kick;
 mod liquid;
@@ -46,6 +47,7 @@ mod pairs;
 mod parts;
 mod polynomial;
 mod relax;
+mod setup;
 mod simulation;
 mod spans;
 mod step;
@@ -57,6 +59,7 @@ pub use critical::{CriticalStep, Mechanism};
 pub use diagnostics::{Conservation, Diagnostics, Energy};
 pub use forcing::{FaceCondition, Forcing, PoreCondition, SurfacePoint};
 pub use material_fields::MaterialFields;
+pub use setup::Setup;
 pub use simulation::Simulation;
 
 use nalgebra::{SMatrix, SVector};
@@ -72,42 +75,15 @@ use crate::phase::Phase;
 use crate::reconstruction::{Cloud, CourantNumbers, Cut, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, packs_serve};
-use crate::transfer;
+use crate::transfer::{self, DofPlaces, Flip, Transfer};
 use dofs::{Dofs, MassModel};
 use order::Order;
 use pairs::Pairs;
 use spans::{SCALARS, Spans, VECTORS};
 
-/// All that a [`Stepper`] is made of.
-#[derive(Clone, Debug)]
-pub struct Setup<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>>
-where
-    T: Scalar,
-{
-    /// Background grid.
-    pub grid: Grid<T, D>,
-    /// Basis family.
-    pub basis: B,
-    /// Reconstruction.
-    pub reconstruction: R,
-    /// Constitutive law.
-    pub law: L,
-    /// Phases.
-    pub phase: P,
-    /// Mass behind the DOF velocities; [`crate::reconstruction::Shepard`] lumps always and
-    /// [`crate::reconstruction::RelaxedTaylor`] constrains always.
-    pub velocity_mass: VelocityMass,
-    /// Particles in their initial state.
-    pub particles: Particles<T, D, L::Number, P::Particle>,
-    /// Particles at the surfaces that carry tractions or, with a liquid in the pores, pressures: there, every
-    /// surface of a body that is not held. So too along one axis with any reconstruction but those by
-    /// particle sums: fits end there.
-    pub surface: Vec<SurfacePoint<T>>,
-}
-
 /// Steps particles through time. See the [module](self) for the algorithm.
 #[derive(Clone, Debug)]
-pub struct Stepper<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>>
+pub struct Stepper<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>, X: Transfer<T, D> = Flip>
 where
     T: Scalar,
 {
@@ -116,7 +92,10 @@ where
     reconstruction: R,
     law: L,
     phase: P,
+    transfer: X,
     particles: Particles<T, D, L::Number, P::Particle>,
+    /// What the transfer remembers of each particle.
+    memory: Vec<X::Particle>,
     surface: Vec<SurfacePoint<T>>,
     bins: Bins<D>,
     order: Order,
@@ -132,6 +111,8 @@ where
     joint: liquid::Joint<T, D>,
     /// What surfaces demand that the liquid does not pass.
     seal: liquid::Seal<T>,
+    /// Where DOFs lie; of none but for a transfer from the grid.
+    places: DofPlaces<T, D>,
     spans: Spans<T, D>,
     /// Whether a particle came near the border of the grid's window.
     strayed: bool,
@@ -158,13 +139,14 @@ where
     diagnostics: Diagnostics<T>,
 }
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Checks particles and phase and allocates all that steps will need.
     ///
@@ -173,11 +155,12 @@ where
     /// the grid, a constant of the phase makes no sense, or beyond one axis the reconstruction is of one
     /// phase only or wants a basis that is one polynomial of its degree in each cell
     /// ([`Reconstruction::PARTICLE_MATRIX`]).
-    pub fn new(setup: Setup<T, D, B, R, L, P>) -> Result<Self, SetupError> {
+    pub fn new(setup: Setup<T, D, B, R, L, P, X>) -> Result<Self, SetupError> {
         const {
             crate::basis::constants_agree::<T, D, B>();
             crate::reconstruction::constants_agree::<T, D, R>();
             crate::phase::constants_agree::<T, D, P>();
+            transfer::constants_agree::<T, D, X>();
         };
         let Setup {
             grid,
@@ -185,8 +168,10 @@ where
             reconstruction,
             law,
             phase,
+            transfer,
             velocity_mass,
             mut particles,
+            mut memory,
             surface,
         } = setup;
         particles.validate_with(law.numbers())?;
@@ -194,6 +179,19 @@ where
         refuse_unknown_stress(&law, &particles)?;
         if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {
             return Err(SetupError::OnePhaseOnly);
+        }
+        from_grid::refuse_what_it_cannot::<T, D, R, P, X>()?;
+        if memory.is_empty() {
+            memory.resize(particles.len(), X::Particle::default());
+        }
+        if memory.len() != particles.len() {
+            let (found, expected) = (memory.len(), particles.len());
+            let name = "memory";
+            return Err(SetupError::Lengths {
+                name,
+                found,
+                expected,
+            });
         }
         if R::PARTICLE_MATRIX && D > 1 {
             polynomial::refuse_bends_within_cells(&basis, &grid)?;
@@ -229,6 +227,7 @@ where
             let beside = along.pow(D as u32 - 1);
             liquid::Seal::new(points, along * beside, beside)
         };
+        let places = from_grid::dof_places::<T, D, B, X>(&basis, &grid)?;
         let spans = Spans::new(particles.len());
         let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
         let mut stepper = Self {
@@ -237,7 +236,9 @@ where
             reconstruction,
             law,
             phase,
+            transfer,
             particles,
+            memory,
             surface,
             bins,
             order,
@@ -247,6 +248,7 @@ where
             drag: Vec::new(),
             joint: liquid::Joint::none(),
             seal,
+            places,
             spans,
             strayed: false,
             crossed: Vec::with_capacity(crossed_count),
@@ -283,6 +285,9 @@ where
             if R::PARTICLE_MATRIX {
                 self.joint = liquid::Joint::new(basis, grid, self.particles.len());
             }
+        }
+        if X::FROM_GRID {
+            self.places.follow(basis, grid);
         }
         (self.face_dofs, self.left_out) = faces::face_dofs(basis, grid);
     }
@@ -368,6 +373,7 @@ where
             }
         }
         forcing.suits_phase(P::FLOWS)?;
+        from_grid::refuse_walls_that_rub::<T, D, X>(forcing)?;
         self.walls_can_be_held(forcing)?;
         let mut outcome = Ok(Energy::none());
         within_pool(self.is_worth_sending(), &mut || {
@@ -427,7 +433,7 @@ where
         let moved = self.order.restore(
             &self.grid,
             cells,
-            &mut self.particles,
+            (&mut self.particles, &mut self.memory),
             numbers_each,
             &mut |targets| {
                 for point in surface.iter_mut() {
@@ -536,6 +542,8 @@ where
     pub fn bytes(&self) -> usize {
         size_of::<Self>()
             + self.particles.bytes()
+            + size_of::<X::Particle>() * self.memory.capacity()
+            + self.places.bytes()
             + self.bins.bytes()
             + self.order.bytes()
             + self.basis.bytes()

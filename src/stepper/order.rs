@@ -65,15 +65,15 @@ impl Order {
         !self.numbers.is_empty() && self.crossings * CHANGED >= self.numbers.len()
     }
 
-    /// Puts the particles in the order of their cells; those of a cell stay in the order in which they are,
-    /// and their states take so many numbers each. Returns whether any has moved; if so, `moves` was told the
+    /// Puts the particles, with what a transfer remembers of them, in the order of their cells; those of a cell
+    /// stay in the order in which they are, and their states take so many numbers each. Returns whether any has moved; if so, `moves` was told the
     /// place that each is at now.
     #[inline(never)]
-    pub(super) fn restore<T: Scalar, const D: usize, S: Copy, P: Copy>(
+    pub(super) fn restore<T: Scalar, const D: usize, S: Copy, P: Copy, M>(
         &mut self,
         grid: &Grid<T, D>,
         cells: &mut [Cell<D>],
-        particles: &mut Particles<T, D, S, P>,
+        (particles, memory): (&mut Particles<T, D, S, P>, &mut [M]),
         numbers_each: usize,
         moves: &mut dyn FnMut(&[u32]),
     ) -> bool {
@@ -99,6 +99,7 @@ impl Order {
         let numbers = &mut self.numbers;
         permute(&mut self.targets, |a, b| {
             particles.swap(a, b, numbers_each);
+            memory.swap(a, b);
             cells.swap(a, b);
             numbers.swap(a, b);
         });
@@ -188,14 +189,18 @@ mod tests {
         let mut order = Order::new(&grid, bins.cells());
         assert!(order.is_lost());
         let cells = bins.cells_mut();
-        let moved = order.restore(&grid, cells, &mut particles, 1, &mut |targets| {
+        let mut memory = [10, 11, 12, 13, 14];
+        let both = (&mut particles, &mut memory[..]);
+        let moved = order.restore(&grid, cells, both, 1, &mut |targets| {
             assert_eq!(targets, [4, 0, 2, 1, 3]);
         });
         assert!(moved && !order.is_lost());
         assert_eq!(order.numbers(), Some(&[1, 3, 2, 4, 0][..]));
         assert_eq!(order.number(4), 0);
         assert_eq!(cells, [[0, 0], [0, 0], [2, 0], [0, 1], [2, 1]]);
-        assert!(!order.restore(&grid, cells, &mut particles, 1, &mut |_| ()));
+        let both = (&mut particles, &mut memory[..]);
+        assert!(!order.restore(&grid, cells, both, 1, &mut |_| ()));
+        assert_eq!(memory, [11, 13, 12, 14, 10]);
         particles.put_back(order.into_numbers());
         assert_eq!(particles.position, points.iter().map(|p| p.0).collect::<Vec<_>>());
     }

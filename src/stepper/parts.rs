@@ -10,14 +10,16 @@ use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// The basis.
     pub fn basis(&self) -> &B {
@@ -32,6 +34,16 @@ where
     /// The phase.
     pub fn phase(&self) -> &P {
         &self.phase
+    }
+
+    /// The transfer.
+    pub fn transfer(&self) -> &X {
+        &self.transfer
+    }
+
+    /// What the transfer remembers of each of [`Stepper::particles`].
+    pub fn memory(&self) -> &[X::Particle] {
+        &self.memory
     }
 
     /// Lets `edit` write particle data between two steps, in the order of [`Stepper::particles`]: velocities
@@ -87,15 +99,17 @@ where
 
     /// What a new stepper can be made of that goes on from here, with the particles in the order in which
     /// they were given. Time, steps and diagnostics begin anew.
-    pub fn into_setup(self) -> Setup<T, D, B, R, L, P> {
+    pub fn into_setup(self) -> Setup<T, D, B, R, L, P, X> {
         let Self {
             grid,
             basis,
             reconstruction,
             law,
             phase,
+            transfer,
             velocity_mass,
             mut particles,
+            mut memory,
             mut surface,
             order,
             ..
@@ -105,7 +119,10 @@ where
         }
         let numbers_each = law.numbers();
         let mut numbers = order.into_numbers().unwrap_or_default();
-        permute(&mut numbers, |a, b| particles.swap(a, b, numbers_each));
+        permute(&mut numbers, |a, b| {
+            particles.swap(a, b, numbers_each);
+            memory.swap(a, b);
+        });
         let whole = Window::whole(grid.cells());
         Setup {
             grid: grid.with_window(whole),
@@ -113,8 +130,10 @@ where
             reconstruction,
             law,
             phase,
+            transfer,
             velocity_mass,
             particles,
+            memory,
             surface,
         }
     }
@@ -128,7 +147,6 @@ mod tests {
     use crate::basis::BSpline;
     use crate::grid::Grid;
     use crate::law::{Moduli, NeoHookean};
-    use crate::mass::VelocityMass;
     use crate::particles::lattice;
     use crate::phase::OnePhase;
     use crate::reconstruction::Taylor;
@@ -145,16 +163,14 @@ mod tests {
         let mut particles = Particles::at_rest(&points, 1.0);
         particles.velocity.fill(vector![1.0, 2.0]);
         let moduli = Moduli::from_young(100.0, 0.3).unwrap();
-        Stepper::new(Setup {
+        Stepper::new(Setup::new(
             grid,
-            basis: BSpline::<2>,
-            reconstruction: Taylor::new(),
-            law: NeoHookean { moduli },
-            phase: OnePhase,
-            velocity_mass: VelocityMass::Lumped,
+            BSpline::<2>,
+            Taylor::new(),
+            NeoHookean { moduli },
+            OnePhase,
             particles,
-            surface: Vec::new(),
-        })
+        ))
         .unwrap()
     }
 

@@ -11,19 +11,21 @@ use crate::reconstruction::{Cloud, CourantNumbers, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::with_features;
 use crate::tensor::determinant;
+use crate::transfer::Transfer;
 
 /// Particles that a law is asked for at once.
 const AT_ONCE: usize = 32;
 /// Largest strain by which a relaxation moves a stress in a step.
 const MOST_STRAIN: f64 = 0.1;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing
     /// has used it since), the velocity after its update and before it is mapped.

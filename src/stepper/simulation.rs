@@ -17,6 +17,7 @@ use crate::phase::{Phase, PoreLiquid};
 use crate::reconstruction::Reconstruction;
 use crate::record::Record;
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 
 /// Any stepper, in `f64` whatever its own scalar is: one virtual call per step.
 pub trait Simulation<const D: usize> {
@@ -107,7 +108,7 @@ pub trait Simulation<const D: usize> {
     fn bytes_per_particle(&self) -> f64;
 }
 
-impl<T, const D: usize, B, R, L, P> Simulation<D> for Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Simulation<D> for Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
@@ -116,6 +117,8 @@ where
     L::Number: Record<T>,
     P: Phase<T, D> + Clone,
     P::Particle: Record<T>,
+    X: Transfer<T, D>,
+    X::Particle: Record<T>,
 {
     fn step(&mut self, dt: f64, forcing: &Forcing<f64, D>) -> Result<(), StepError> {
         self.step(T::lit(dt), &cast_forcing(forcing))

@@ -22,14 +22,16 @@ use crate::phase::Phase;
 use crate::reconstruction::{Reconstruction, Stresses};
 use crate::scalar::Scalar;
 use crate::transfer::Drift;
+use crate::transfer::Transfer;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// The step on this thread, which others of its pool may help.
     pub(super) fn step_here(
@@ -58,17 +60,33 @@ where
         self.p2g(dt, forcing);
         self.add_loads(forcing);
         self.accelerate(dt, forcing);
-        let totals = self.kick_particles(dt);
+        if const { X::FROM_GRID } {
+            self.kick_dofs(dt, forcing);
+        }
+        let totals = self.update_velocities(dt);
         self.filter(dt);
-        let mapped = self.map_momenta();
-        self.record(&totals, mapped);
+        if const { !X::FROM_GRID } {
+            let mapped = self.map_momenta();
+            self.record(&totals, mapped);
+        }
         if const { !P::FLOWS } {
             let after = &totals.momenta[0];
             self.balance
                 .close(dt, &forcing.body_force, after, &mut self.diagnostics);
         }
-        self.solve_velocities(dt, forcing);
-        self.apply_wall_contact(forcing);
+        if const { !X::FROM_GRID } {
+            self.solve_velocities(dt, forcing);
+            self.apply_wall_contact(forcing);
+        }
+    }
+
+    /// Velocities of the particles: by the accelerations, or from the grid.
+    fn update_velocities(&mut self, dt: T) -> Totals<T, D> {
+        if const { X::FROM_GRID } {
+            self.take_from_grid(dt)
+        } else {
+            self.kick_particles(dt)
+        }
     }
 
     /// Positions, strains and stresses of the particles.
@@ -324,7 +342,7 @@ where
     }
 
     /// Compares what was mapped with what the particles have.
-    fn record(&mut self, totals: &Totals<T, D>, mapped: [MassMomentum<T, D>; 2]) {
+    pub(super) fn record(&mut self, totals: &Totals<T, D>, mapped: [MassMomentum<T, D>; 2]) {
         self.diagnostics.record(totals, mapped);
     }
 

@@ -305,6 +305,14 @@ pub(super) struct InSpan<'a, T, const D: usize, const S: usize, const C: usize, 
     forces: [&'a mut [SVector<T, D>]; G],
 }
 
+impl<T: Scalar, const D: usize> InSpan<'_, T, D, 0, 1, 0> {
+    /// Adds a vector at a DOF.
+    #[inline(always)]
+    pub(super) fn add_vector(&mut self, dof: usize, vector: SVector<T, D>) {
+        self.vectors[0][dof - self.first] += vector;
+    }
+}
+
 impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize>
     InSpan<'a, T, D, S, C, G>
 {

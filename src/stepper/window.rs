@@ -12,6 +12,7 @@ use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 
 /// Cells beyond which a window is laid at least.
 const MARGIN: usize = 3;
@@ -32,13 +33,14 @@ pub(super) fn lay<T: Scalar, const D: usize>(grid: Grid<T, D>, cells: &[Cell<D>]
     }
 }
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Lays the window anew around the particles, with DOFs to it.
     #[cold]

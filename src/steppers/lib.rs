@@ -149,16 +149,11 @@ impl<T, const D: usize> Parts<T, D> {
         if self.under_stress {
             particles.start_under_stress(&self.law, |_, _| None)?;
         }
-        let stepper = Stepper::new(Setup {
-            grid: self.grid,
-            basis,
-            reconstruction,
-            law: self.law,
-            phase,
-            velocity_mass: self.velocity_mass,
-            particles,
-            surface: self.surface,
-        })?;
+        let stepper = Stepper::new(
+            Setup::new(self.grid, basis, reconstruction, self.law, phase, particles)
+                .with_velocity_mass(self.velocity_mass)
+                .with_surface(self.surface),
+        )?;
         Ok(Box::new(stepper))
     }
 }

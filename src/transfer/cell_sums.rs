@@ -7,6 +7,7 @@
 use nalgebra::SVector;
 
 use super::p2g::Parts;
+use super::places::DofPlaces;
 use super::sums::Sum;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
@@ -38,7 +39,8 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, const S: usize, const 
         }
     }
 
-    /// Adds `parts`, tensors by coordinates, at every DOF that `x` in `cell` sees. `sink(dof, sum)` takes the
+    /// Adds `parts`, tensors by coordinates, at every DOF that `x` in `cell` sees; with `places` tensors go
+    /// with moments. `sink(dof, sum)` takes the
     /// sums of the cell before.
     #[inline(always)]
     pub(super) fn add(
@@ -46,6 +48,7 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, const S: usize, const 
         cell: &'a Cell<D>,
         x: &'a SVector<T, D>,
         parts: &Parts<T, D, S, C, G>,
+        places: Option<&DofPlaces<T, D>>,
         sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
     ) {
         if self.cell.is_none_or(|(last, _)| last != cell) {
@@ -54,7 +57,10 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, const S: usize, const 
         }
         let mut k = 0;
         let sums = &mut self.sums;
-        self.basis.for_each(self.grid, cell, x, |dof, phi, gradient| {
+        self.basis.for_each(self.grid, cell, x, |dof, phi, mut gradient| {
+            if let Some(places) = places {
+                gradient = places.offset(dof, x) * phi;
+            }
             match sums.get_mut(k) {
                 Some(sum) => sum.add(parts, phi, &gradient),
                 None => {

@@ -92,7 +92,7 @@ pub(crate) fn kick<
             totals[q].scale += size(&momenta[q]);
         }
         if M > 0 {
-            sums.add(cell, x, &parts(&momenta), &mut sink);
+            sums.add(cell, x, &parts(&momenta), None, &mut sink);
         }
     }
     if M > 0 {

@@ -1,17 +1,18 @@
-//! The sweeps between particles and grid: P2G, G2P and both in one.
+//! Between particles and grid: how velocities are transferred ([`Transfer`]), and the sweeps.
 //!
-//! A sweep is written once, generic in the packs that it computes with ([`crate::simd`]), in the basis and in
-//! what particles add to the DOFs or take from them ([`Contribution`], [`Kick`]): it serves one phase and
+//! A sweep is written once, generic in the packs that it computes with (`simd`), in the basis and in
+//! what particles add to the DOFs or take from them (`Contribution`, `Kick`): it serves one phase and
 //! two, plain particles and the points of fits, four particles of a cell in the lanes or four cells. It knows
 //! no law and no phase. Packs are chosen once a span, at run time.
 //!
 //! | | |
 //! |---|---|
-//! | [`p2g`] | `m_i = sum_p m_p phi_i(x_p)`, forces, momenta: what a [`Contribution`] says |
-//! | [`kick`](fn@kick) | G2P of accelerations, then P2G of the new momenta in the same sweep |
-//! | [`drift`] | G2P of velocities and their gradients: positions, and the increments that laws are asked for |
-//! | [`fits`] | P2G from polynomials fitted in each cell |
-//! | [`pairs`] | the consistent mass matrix |
+//! | `p2g` | `m_i = sum_p m_p phi_i(x_p)`, forces, momenta: what a `Contribution` says |
+//! | `kick` | G2P of accelerations, then P2G of the new momenta in the same sweep |
+//! | `drift` | G2P of velocities and their gradients: positions, and what laws are asked for |
+//! | `gather` | G2P of velocities with their moments, for transfers from the grid |
+//! | `fits` | P2G from polynomials fitted in each cell |
+//! | `pairs` | the consistent mass matrix |
 //!
 //! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs,
 //! and then over the rows (`rows`). What a group adds to DOFs stays in lanes while particles of its cell
@@ -24,20 +25,27 @@
 mod cell_sums;
 mod drift;
 mod fits;
+mod flip;
+mod gather;
 mod group;
 mod kick;
 mod lines;
 mod p2g;
 mod pairs;
+mod places;
 mod rows;
 mod sums;
 
 pub(crate) use drift::{Drift, Outcome, drift};
 pub(crate) use fits::{Fits, Integrand, MOST_POINTS, MassesAndMomenta, Stress, components_of};
+pub(crate) use flip::constants_agree;
+pub use flip::{Flip, GridVelocity, Transfer};
+pub(crate) use gather::{Receive, Seen, gather};
 pub(crate) use group::Group;
 pub(crate) use kick::{Kick, Momentum, kick};
 pub(crate) use p2g::{Contribution, Parts, Sum, p2g};
 pub(crate) use pairs::{sum_pairs, sums_apply};
+pub(crate) use places::DofPlaces;
 
 use crate::basis::{BasisFamily, Factors, FixedPoints};
 use crate::grid::{Cell, Grid};

@@ -5,6 +5,7 @@ use nalgebra::SVector;
 use super::Sweep;
 use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
+use super::places::DofPlaces;
 use super::sums::Sums;
 pub(crate) use super::sums::{Parts, Sum};
 use crate::basis::BasisFamily;
@@ -20,6 +21,12 @@ pub(crate) trait Contribution<T: Scalar, const D: usize, const S: usize, const C
     /// The same of the first so many particles: lengths that a compiler sees to be equal, so that one test of
     /// an index does for all arrays.
     fn cut(self, count: usize) -> Self;
+
+    /// Places of the DOFs, if tensors are to go with the moments `phi_i (x_i - x)` in the place of gradients.
+    #[inline(always)]
+    fn places(&self) -> Option<&DofPlaces<T, D>> {
+        None
+    }
 
     /// That of the particles of a group, nothing in spare lanes; `slopes` are to be multiplied with the
     /// columns of tensors: gradients are by coordinates in cell sizes.
@@ -59,7 +66,7 @@ pub(crate) fn p2g<
     for (p, (x, cell)) in positions.iter().zip(cells).enumerate() {
         let group = Group { first: p, count: 1 };
         let parts = what.parts::<One, 1, true>(One, group, &slopes);
-        sums.add(cell, x, &parts, &mut sink);
+        sums.add(cell, x, &parts, what.places(), &mut sink);
     }
     sums.flush(&mut sink);
 }
@@ -122,7 +129,10 @@ where
         let (k, sweep) = (self.k, self.sweep);
         let cell = &self.cells[group.first];
         let x = group.vectors::<FULL, T, K, D>(k, self.positions);
-        let factors = sweep.factors(k, cell, &x);
+        let mut factors = sweep.factors(k, cell, &x);
+        if let Some(places) = self.what.places() {
+            factors = sweep.moments(k, cell, &x, &factors, places);
+        }
         let parts = self.what.parts::<K, N, FULL>(k, group, &self.slopes);
         self.sums.add(k, sweep, cell, &factors, &parts, &mut self.sink);
     }

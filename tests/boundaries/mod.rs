@@ -135,19 +135,18 @@ fn held_bspline_ends_are_exact() {
         for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
             v[0] = (std::f64::consts::PI * x[0]).sin();
         }
-        let mut stepper = Stepper::new(Setup {
+        let law = LinearElastic {
+            moduli: Moduli::uniaxial(1e4).unwrap(),
+        };
+        let setup = Setup::new(
             grid,
-            basis: BSpline::<2>,
-            reconstruction: Taylor::<f64, 1, 3>::new(),
-            law: LinearElastic {
-                moduli: Moduli::uniaxial(1e4).unwrap(),
-            },
-            phase: OnePhase,
-            velocity_mass: mass,
+            BSpline::<2>,
+            Taylor::<f64, 1, 3>::new(),
+            law,
+            OnePhase,
             particles,
-            surface: Vec::new(),
-        })
-        .unwrap();
+        );
+        let mut stepper = Stepper::new(setup.with_velocity_mass(mass)).unwrap();
         let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
         let forcing = ends
             .into_iter()
@@ -168,7 +167,6 @@ fn a_told_motion_reaches_the_particles_with_the_wall_s_share() {
     use materialpoint::basis::Linear;
     use materialpoint::grid::{Face, Grid, Side};
     use materialpoint::law::{LinearElastic, Moduli};
-    use materialpoint::mass::VelocityMass;
     use materialpoint::particles::Particles;
     use materialpoint::phase::OnePhase;
     use materialpoint::reconstruction::Shepard;
@@ -176,18 +174,16 @@ fn a_told_motion_reaches_the_particles_with_the_wall_s_share() {
     use nalgebra::vector;
 
     let (share, velocity, acceleration, dt) = (0.75, 0.3, 2.0, 1e-3);
-    let mut stepper = Stepper::new(Setup {
-        grid: Grid::new(vector![0.0], vector![4.0], [4]).unwrap(),
-        basis: Linear,
-        reconstruction: Shepard,
-        law: LinearElastic {
+    let mut stepper = Stepper::new(Setup::new(
+        Grid::new(vector![0.0], vector![4.0], [4]).unwrap(),
+        Linear,
+        Shepard,
+        LinearElastic {
             moduli: Moduli::uniaxial(1.0).unwrap(),
         },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
-        particles: Particles::at_rest(&[(vector![1.0 - share], 1.0)], 1.0),
-        surface: Vec::new(),
-    })
+        OnePhase,
+        Particles::at_rest(&[(vector![1.0 - share], 1.0)], 1.0),
+    ))
     .unwrap();
     let wall = Face {
         axis: 0,

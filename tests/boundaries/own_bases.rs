@@ -101,18 +101,19 @@ where
     for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
         v[0] = 1e-3 * (PI * x[0] / LENGTH).sin();
     }
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis,
-        reconstruction,
-        law: LinearElastic {
-            moduli: Moduli::from_young(MODULUS, 0.0).unwrap(),
-        },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Consistent,
-        particles,
-        surface: Vec::new(),
-    })
+    let mut stepper = Stepper::new(
+        Setup::new(
+            grid,
+            basis,
+            reconstruction,
+            LinearElastic {
+                moduli: Moduli::from_young(MODULUS, 0.0).unwrap(),
+            },
+            OnePhase,
+            particles,
+        )
+        .with_velocity_mass(VelocityMass::Consistent),
+    )
     .unwrap();
     let walls = Face::all::<D>().fold(Forcing::none(), |forcing, face| {
         forcing.with_face(face, FaceCondition::roller(face.axis))

@@ -37,18 +37,19 @@ where
             forcing.set_face(Face { axis, side }, FaceCondition::roller(axis));
         }
     }
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis,
-        reconstruction,
-        law: NeoHookean {
-            moduli: Moduli::uniaxial(4e4).unwrap(),
-        },
-        phase: OnePhase,
-        velocity_mass: mass,
-        particles,
-        surface: Vec::new(),
-    })
+    let mut stepper = Stepper::new(
+        Setup::new(
+            grid,
+            basis,
+            reconstruction,
+            NeoHookean {
+                moduli: Moduli::uniaxial(4e4).unwrap(),
+            },
+            OnePhase,
+            particles,
+        )
+        .with_velocity_mass(mass),
+    )
     .unwrap();
     for _ in 0..STEPS {
         stepper.step(DT, &forcing).unwrap();

@@ -47,18 +47,17 @@ impl MethodVisitor<f64> for Bar {
         for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
             v[0] = 0.8 * (std::f64::consts::PI * x[0]).sin();
         }
-        let setup = Setup {
+        let setup = Setup::new(
             grid,
             basis,
             reconstruction,
-            law: Hill {
+            Hill {
                 moduli: Moduli::uniaxial(4e4).unwrap(),
             },
-            phase: OnePhase,
-            velocity_mass: self.mass,
+            OnePhase,
             particles,
-            surface: Vec::new(),
-        };
+        )
+        .with_velocity_mass(self.mass);
         Box::new(Stepper::new(setup).unwrap())
     }
 }

@@ -208,17 +208,10 @@ fn moves_the_stress<S: Copy + Default + Send + Sync>() -> bool {
         stress[(0, 0)] = (p * 5 % 7) as f64;
     }
     let before = particles.stress.clone();
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis: BSpline::<2>,
-        reconstruction: RelaxedTaylor::<f64, 1, 3>::for_degree(2),
-        law: Frozen(std::marker::PhantomData::<S>),
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Constrained,
-        particles,
-        surface: Vec::new(),
-    })
-    .unwrap();
+    let law = Frozen(std::marker::PhantomData::<S>);
+    let fits = RelaxedTaylor::<f64, 1, 3>::for_degree(2);
+    let setup = Setup::new(grid, BSpline::<2>, fits, law, OnePhase, particles);
+    let mut stepper = Stepper::new(setup.with_velocity_mass(VelocityMass::Constrained)).unwrap();
     stepper.step(1e-6, &Forcing::none()).unwrap();
     stepper.particles().stress != before
 }

@@ -9,7 +9,6 @@
 use materialpoint::basis::DualDomain;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{self, Moduli};
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, OnePhase, Phase, TwoPhase};
 use materialpoint::reconstruction::{Reconstruction, Shepard, SubPoints};
@@ -139,16 +138,17 @@ fn after_200_steps<P: Phase<f64, 1>>(
         loaded: true,
     }];
     let moduli = Moduli::uniaxial(1e7).unwrap();
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis: DualDomain::new(),
-        reconstruction,
-        law: law::Hill { moduli },
-        phase,
-        velocity_mass: VelocityMass::Lumped,
-        particles,
-        surface,
-    })
+    let mut stepper = Stepper::new(
+        Setup::new(
+            grid,
+            DualDomain::new(),
+            reconstruction,
+            law::Hill { moduli },
+            phase,
+            particles,
+        )
+        .with_surface(surface),
+    )
     .unwrap();
     let forcing = Forcing::none()
         .with_face(face(Side::Min), FaceCondition::fixed())

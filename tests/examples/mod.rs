@@ -1,5 +1,7 @@
 //! Every example runs, and what it prints is right.
 
+#[path = "../../examples/apic.rs"]
+pub mod apic;
 #[path = "../../examples/cam_clay.rs"]
 mod cam_clay;
 // Its dual numbers serve `laws` too.
@@ -614,14 +616,15 @@ fn the_thermal_example_prints_what_theory_says() {
 fn the_pages_show_the_examples_as_they_are() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
-    let examples = read("examples/own_law.rs") + &read("examples/own_basis.rs");
+    let files = ["own_law", "own_basis", "apic"].map(|name| read(&format!("examples/{name}.rs")));
+    let examples = files.concat();
     let page = read("docs/guide/own-types.md");
     let shown: Vec<&str> = page
         .split("```rust\n")
         .skip(1)
         .filter_map(|rest| rest.split("```").next())
         .collect();
-    assert_eq!(shown.len(), 2);
+    assert_eq!(shown.len(), 3);
     for part in shown {
         assert!(examples.contains(part), "{part}");
     }

@@ -148,16 +148,18 @@ impl<L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Copy + 'static> Bodies<L> 
         B: BasisFamily<f64, 1> + 'static,
         R: Reconstruction<f64, 1> + Clone + 'static,
     {
-        let stepper = Stepper::new(Setup {
-            grid: Grid::new(vector![0.0], vector![self.length], [self.cells]).unwrap(),
-            basis,
-            reconstruction,
-            law: self.law,
-            phase: OnePhase,
-            velocity_mass,
-            particles: self.particles.clone(),
-            surface: self.surface.clone(),
-        });
+        let stepper = Stepper::new(
+            Setup::new(
+                Grid::new(vector![0.0], vector![self.length], [self.cells]).unwrap(),
+                basis,
+                reconstruction,
+                self.law,
+                OnePhase,
+                self.particles.clone(),
+            )
+            .with_velocity_mass(velocity_mass)
+            .with_surface(self.surface.clone()),
+        );
         Box::new(stepper.unwrap())
     }
 }

@@ -233,7 +233,6 @@ fn a_step_beyond_hill_s_law_ends_in_an_error_that_names_the_particle() {
 fn a_start_beyond_hill_s_law_is_refused() {
     use materialpoint::basis::Linear;
     use materialpoint::grid::Grid;
-    use materialpoint::mass::VelocityMass;
     use materialpoint::particles::Particles;
     use materialpoint::phase::OnePhase;
     use materialpoint::reconstruction::Shepard;
@@ -242,16 +241,14 @@ fn a_start_beyond_hill_s_law_is_refused() {
     let starting_at = |stress| {
         let mut particles = Particles::at_rest(&[(vector![0.3], 0.5), (vector![0.7], 0.5)], 1.0);
         particles.stress[1][(0, 0)] = stress;
-        Stepper::new(Setup {
-            grid: Grid::new(vector![0.0], vector![1.0], [1]).unwrap(),
-            basis: Linear,
-            reconstruction: Shepard,
-            law: hill(3.0),
-            phase: OnePhase,
-            velocity_mass: VelocityMass::Lumped,
+        Stepper::new(Setup::new(
+            Grid::new(vector![0.0], vector![1.0], [1]).unwrap(),
+            Linear,
+            Shepard,
+            hill(3.0),
+            OnePhase,
             particles,
-            surface: Vec::new(),
-        })
+        ))
         .err()
     };
     assert_eq!(starting_at(2.9), None);

@@ -133,18 +133,19 @@ fn saturated<B: BasisFamily<f64, 1>>(basis: B, degree: usize, mass: VelocityMass
         particles.velocity[p][0] = speed;
         particles.phase[p].velocity[0] = speed;
     }
-    let stepper = Stepper::new(Setup {
-        grid: Grid::new(vector![0.0], vector![6.0], [6]).unwrap(),
-        basis,
-        reconstruction: Taylor::<f64, 1, 3>::for_degree(degree),
-        law: LinearElastic {
-            moduli: Moduli::uniaxial(1e7).unwrap(),
-        },
-        phase,
-        velocity_mass: mass,
-        particles,
-        surface: Vec::new(),
-    });
+    let stepper = Stepper::new(
+        Setup::new(
+            Grid::new(vector![0.0], vector![6.0], [6]).unwrap(),
+            basis,
+            Taylor::<f64, 1, 3>::for_degree(degree),
+            LinearElastic {
+                moduli: Moduli::uniaxial(1e7).unwrap(),
+            },
+            phase,
+            particles,
+        )
+        .with_velocity_mass(mass),
+    );
     let mut simulation: Box<dyn Simulation<1>> = Box::new(stepper.unwrap());
     let mut apart = 0.0_f64;
     for _ in 0..5 {

@@ -78,18 +78,19 @@ where
     R: Reconstruction<DoubleDouble, 1> + Clone + 'static,
 {
     let lit = DoubleDouble::lit;
-    let stepper = Stepper::new(Setup {
-        grid: Grid::new(vector![lit(0.0)], vector![lit(1.0)], [cells]).unwrap(),
-        basis,
-        reconstruction,
-        law: LinearElastic {
-            moduli: Moduli::uniaxial(lit(7e6)).unwrap(),
-        },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Consistent,
-        particles: start.cast(),
-        surface: Vec::new(),
-    });
+    let stepper = Stepper::new(
+        Setup::new(
+            Grid::new(vector![lit(0.0)], vector![lit(1.0)], [cells]).unwrap(),
+            basis,
+            reconstruction,
+            LinearElastic {
+                moduli: Moduli::uniaxial(lit(7e6)).unwrap(),
+            },
+            OnePhase,
+            start.cast(),
+        )
+        .with_velocity_mass(VelocityMass::Consistent),
+    );
     Box::new(stepper.unwrap())
 }
 

@@ -8,7 +8,6 @@ use super::Specimen;
 use materialpoint::basis::Linear;
 use materialpoint::grid::Grid;
 use materialpoint::law::{ConstitutiveLaw, NewtonianFluid, VolumeRatio};
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Shepard;
@@ -125,17 +124,7 @@ fn a_step_hands_its_time_to_the_law() {
         *velocity = vector![3.0 * x[1], 0.0];
     }
     let law = fluid(7.0);
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis: Linear,
-        reconstruction: Shepard,
-        law,
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
-        particles,
-        surface: Vec::new(),
-    })
-    .unwrap();
+    let mut stepper = Stepper::new(Setup::new(grid, Linear, Shepard, law, OnePhase, particles)).unwrap();
     stepper.step(1e-6, &Forcing::none()).unwrap();
     let middle = stepper
         .particles()

@@ -11,7 +11,6 @@ use materialpoint::law::{
     ConeMatch, ConstitutiveLaw, DruckerPrager, Hencky, Hill, LinearElastic, NeoHookean, NewtonianFluid,
     StVenantKirchhoff, Strength, VonMises,
 };
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Shepard;
@@ -161,17 +160,7 @@ fn particles_take_their_states_from_their_stresses() {
     particles
         .start_under_stress(&law, |_, stress| Some(stress[(0, 0)]))
         .unwrap();
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis: Linear,
-        reconstruction: Shepard,
-        law,
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
-        particles,
-        surface: Vec::new(),
-    })
-    .unwrap();
+    let mut stepper = Stepper::new(Setup::new(grid, Linear, Shepard, law, OnePhase, particles)).unwrap();
     stepper.step(1e-9, &Forcing::none()).unwrap();
     for stress in &stepper.particles().stress {
         assert!((stress - told).norm() < 1e-3, "{stress}");

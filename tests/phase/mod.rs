@@ -51,16 +51,17 @@ fn bar<R: Reconstruction<f64, 1>, P: Phase<f64, 1>>(
         v[0] = 0.1 * (std::f64::consts::PI * x[0]).sin();
     }
     let moduli = Moduli::uniaxial(modulus).unwrap();
-    Stepper::new(Setup {
-        grid,
-        basis: BSpline::<2>,
-        reconstruction,
-        law: LinearElastic { moduli },
-        phase,
-        velocity_mass: VelocityMass::Consistent,
-        particles,
-        surface: Vec::new(),
-    })
+    Stepper::new(
+        Setup::new(
+            grid,
+            BSpline::<2>,
+            reconstruction,
+            LinearElastic { moduli },
+            phase,
+            particles,
+        )
+        .with_velocity_mass(VelocityMass::Consistent),
+    )
     .unwrap()
 }
 

@@ -116,16 +116,10 @@ impl Case {
             forcing.with_face(face, held)
         });
         let mut simulation: Box<dyn Simulation<D>> = Box::new(
-            Stepper::new(Setup {
-                grid,
-                basis: Linear,
-                reconstruction,
-                law,
-                phase: OnePhase,
-                velocity_mass: VelocityMass::Constrained,
-                particles,
-                surface: Vec::new(),
-            })
+            Stepper::new(
+                Setup::new(grid, Linear, reconstruction, law, OnePhase, particles)
+                    .with_velocity_mass(VelocityMass::Constrained),
+            )
             .unwrap(),
         );
         for _ in 0..STEPS {

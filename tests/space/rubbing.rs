@@ -122,18 +122,19 @@ where
         coefficient: case.friction,
         velocity: belt,
     };
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis,
-        reconstruction,
-        law: NeoHookean {
-            moduli: Moduli::from_young(case.youngs_modulus, case.poissons_ratio).unwrap(),
-        },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Consistent,
-        particles,
-        surface: Vec::new(),
-    })
+    let mut stepper = Stepper::new(
+        Setup::new(
+            grid,
+            basis,
+            reconstruction,
+            NeoHookean {
+                moduli: Moduli::from_young(case.youngs_modulus, case.poissons_ratio).unwrap(),
+            },
+            OnePhase,
+            particles,
+        )
+        .with_velocity_mass(VelocityMass::Consistent),
+    )
     .unwrap();
     let angle = case.slope.to_radians();
     let gravity = |share: f64| {

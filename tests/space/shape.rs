@@ -227,17 +227,9 @@ where
         *v = vector![1.0 + 2.0 * x[1], -2.0 * x[0]];
     }
     let moduli = Moduli::from_young(1e5, 0.3).unwrap();
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        reconstruction: RelaxedTaylor::<f64, 2, 6>::for_basis(&basis),
-        basis,
-        law: NeoHookean { moduli },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Constrained,
-        particles,
-        surface: Vec::new(),
-    })
-    .unwrap();
+    let fits = RelaxedTaylor::<f64, 2, 6>::for_basis(&basis);
+    let setup = Setup::new(grid, basis, fits, NeoHookean { moduli }, OnePhase, particles);
+    let mut stepper = Stepper::new(setup.with_velocity_mass(VelocityMass::Constrained)).unwrap();
     let wall = |axis| {
         (
             Face {

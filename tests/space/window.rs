@@ -6,7 +6,6 @@
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, FixedPoints, Linear};
 use materialpoint::grid::{Cell, Grid};
 use materialpoint::law::{Moduli, NeoHookean};
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Bins, Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor, Shepard, Taylor};
@@ -93,16 +92,14 @@ fn ball<const D: usize, B: BasisFamily<f64, D>, R: Reconstruction<f64, D>>(
         v[1] += 2.0 * (x[0] - centre);
     }
     let moduli = Moduli::from_young(1e3, 0.3).unwrap();
-    let setup = Setup {
+    let setup = Setup::new(
         grid,
         basis,
         reconstruction,
-        law: NeoHookean { moduli },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
+        NeoHookean { moduli },
+        OnePhase,
         particles,
-        surface: Vec::new(),
-    };
+    );
     Stepper::new(setup).unwrap()
 }
 

@@ -41,16 +41,17 @@ where
     let points = lattice(&grid, &SVector::repeat(0.25), &SVector::repeat(0.75), [4; D]);
     let particles = Particles::at_rest(&points, soil(Drag::Implicit).dry_density());
     let moduli = Moduli::from_young(1e7, 0.2).unwrap();
-    Stepper::new(Setup {
-        grid,
-        basis,
-        reconstruction,
-        law: LinearElastic { moduli },
-        phase,
-        velocity_mass: VelocityMass::Consistent,
-        particles,
-        surface: Vec::new(),
-    })
+    Stepper::new(
+        Setup::new(
+            grid,
+            basis,
+            reconstruction,
+            LinearElastic { moduli },
+            phase,
+            particles,
+        )
+        .with_velocity_mass(VelocityMass::Consistent),
+    )
     .unwrap()
 }
 

@@ -119,16 +119,11 @@ where
             })
             .collect();
         Box::new(
-            Stepper::new(Setup {
-                grid,
-                basis,
-                reconstruction,
-                law: column.law.clone(),
-                phase,
-                velocity_mass: column.mass,
-                particles,
-                surface,
-            })
+            Stepper::new(
+                Setup::new(grid, basis, reconstruction, column.law.clone(), phase, particles)
+                    .with_velocity_mass(column.mass)
+                    .with_surface(surface),
+            )
             .unwrap(),
         )
     }

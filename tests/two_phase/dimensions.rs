@@ -43,16 +43,17 @@ where
         particles.phase[p].velocity[0] = 2e-3 * s;
     }
     let moduli = Moduli::from_young(1e7, 0.0).unwrap();
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis,
-        reconstruction,
-        law: LinearElastic { moduli },
-        phase: PHASE,
-        velocity_mass: mass,
-        particles,
-        surface: Vec::new(),
-    })
+    let mut stepper = Stepper::new(
+        Setup::new(
+            grid,
+            basis,
+            reconstruction,
+            LinearElastic { moduli },
+            PHASE,
+            particles,
+        )
+        .with_velocity_mass(mass),
+    )
     .unwrap();
     let walls = Face::all::<D>().fold(Forcing::none(), |f, face| {
         f.with_face(face, FaceCondition::roller(face.axis))

@@ -64,20 +64,22 @@ impl MethodVisitor<f64> for &Scene {
             loaded: true,
         }];
         let moduli = Moduli::uniaxial(self.modulus).unwrap();
-        let stepper = Stepper::new(Setup {
-            grid,
-            basis,
-            reconstruction,
-            law: LinearElastic { moduli },
-            phase: self.phase,
-            velocity_mass: if self.lumped {
+        let stepper = Stepper::new(
+            Setup::new(
+                grid,
+                basis,
+                reconstruction,
+                LinearElastic { moduli },
+                self.phase,
+                particles,
+            )
+            .with_velocity_mass(if self.lumped {
                 VelocityMass::Lumped
             } else {
                 VelocityMass::Consistent
-            },
-            particles,
-            surface,
-        });
+            })
+            .with_surface(surface),
+        );
         Box::new(stepper.unwrap())
     }
 }

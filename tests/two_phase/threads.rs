@@ -48,18 +48,19 @@ where
             pressure: -1e2 * x[1],
         };
     }
-    let stepper = Stepper::new(Setup {
-        grid,
-        basis: basis.clone(),
-        reconstruction: reconstruction.clone(),
-        law: LinearElastic {
-            moduli: Moduli::from_young(1e6, 0.2).unwrap(),
-        },
-        phase: PHASE,
-        velocity_mass: mass,
-        particles,
-        surface: Vec::new(),
-    });
+    let stepper = Stepper::new(
+        Setup::new(
+            grid,
+            basis.clone(),
+            reconstruction.clone(),
+            LinearElastic {
+                moduli: Moduli::from_young(1e6, 0.2).unwrap(),
+            },
+            PHASE,
+            particles,
+        )
+        .with_velocity_mass(mass),
+    );
     Box::new(stepper.unwrap())
 }
 

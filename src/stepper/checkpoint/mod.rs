@@ -35,9 +35,10 @@ use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::record::Record;
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 use codec::{In, Out};
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
@@ -46,6 +47,8 @@ where
     L::Number: Record<T>,
     P: Phase<T, D>,
     P::Particle: Record<T>,
+    X: Transfer<T, D>,
+    X::Particle: Record<T>,
 {
     /// Writes all that [`Stepper::restore`] needs to go on as this stepper will, to the bit; nothing is held
     /// twice in memory. The bytes bear no mark and no checksum of their own.
@@ -64,6 +67,7 @@ where
         out.flag(self.balance.momentum.is_some())?;
         out.numbers(self.balance.momentum.unwrap_or_else(SVector::zeros).as_slice())?;
         self.particles.save(&mut out)?;
+        out.records(&self.memory)?;
         for point in &self.surface {
             out.count(point.particle)?;
         }
@@ -92,6 +96,7 @@ where
         from.numbers(momentum.as_mut_slice())?;
         self.balance.momentum = known.then_some(momentum);
         self.particles.restore(&mut from, self.law.numbers())?;
+        from.records("what the transfer remembers of particle", &mut self.memory)?;
         let count = self.particles.len();
         for (index, point) in self.surface.iter_mut().enumerate() {
             point.particle = from.count_below(count, "the particle of surface", index)?;

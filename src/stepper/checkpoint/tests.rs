@@ -10,7 +10,6 @@ use crate::basis::{BSpline, BasisFamily, Linear};
 use crate::error::RestoreError;
 use crate::grid::Grid;
 use crate::law::{ConstitutiveLaw, LinearElastic, Moduli, NeoHookean};
-use crate::mass::VelocityMass;
 use crate::parallel::PARTICLES;
 use crate::particles::Particles;
 use crate::phase::OnePhase;
@@ -50,17 +49,7 @@ where
     R: Reconstruction<f64, D>,
     L: ConstitutiveLaw<f64, D>,
 {
-    Stepper::new(Setup {
-        grid,
-        basis,
-        reconstruction,
-        law,
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
-        particles,
-        surface: Vec::new(),
-    })
-    .unwrap()
+    Stepper::new(Setup::new(grid, basis, reconstruction, law, OnePhase, particles)).unwrap()
 }
 
 fn plane<R: Reconstruction<f64, 2>>(

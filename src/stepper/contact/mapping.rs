@@ -19,6 +19,7 @@ use crate::stepper::critical::at_rest;
 use crate::stepper::matrix::Unknown;
 use crate::stepper::velocity::{divide, divide_by_mass};
 use crate::stepper::{Forcing, Stepper};
+use crate::transfer::Transfer;
 
 /// Share of the walls' greatest relative velocity within which the contact law is to hold.
 const TOLERANCE: f64 = 1e-9;
@@ -43,13 +44,14 @@ pub(super) const fn reach<const D: usize>() -> usize {
     }
 }
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Solves for the impulses and passes them on.
     pub(super) fn push_by_mapping(&mut self, forcing: &Forcing<T, D>, scale: T) -> WallAction<T, D> {

@@ -40,6 +40,7 @@ use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 use delassus::Delassus;
 use subspace::Subspace;
 use wall::{Contact, Wall, WallDofs};
@@ -192,13 +193,14 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
     }
 }
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Lets the walls act on particles and DOFs, whose velocities are those that the step would have without
     /// them.

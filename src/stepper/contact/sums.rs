@@ -10,17 +10,19 @@ use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::stepper::Stepper;
+use crate::transfer::Transfer;
 
 /// Share of the walls' greatest relative velocity within which the contact law is to hold.
 const TOLERANCE: f64 = 1e-11;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Solves for the impulses and passes them on.
     pub(super) fn push_by_sums(&mut self, scale: T) -> WallAction<T, D> {

@@ -9,14 +9,16 @@ use crate::law::LawSweep;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Turns the forces of both phases into accelerations; a DOF that no particle reaches has none.
     ///
@@ -71,7 +73,7 @@ where
 
     /// Share of a change of the solid's velocity that the drag passes on to the liquid within a step, given
     /// the liquid's mass and the drag of a DOF: none where the drag is felt at the step's start.
-    pub(super) fn share_of_drag(&self, dt: T) -> impl Fn(T, T) -> T + use<T, D, B, R, L, P> {
+    pub(super) fn share_of_drag(&self, dt: T) -> impl Fn(T, T) -> T + use<T, D, B, R, L, P, X> {
         let n = self.phase.porosity();
         let dt = match self.phase.drag_treatment() {
             Drag::Implicit => dt,

@@ -8,14 +8,16 @@ use crate::law::LawSweep;
 use crate::phase::{Phase, PoreLiquid};
 use crate::reconstruction::{Cloud, Reconstruction};
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// Effective stress and pressure after the forces are assembled from them, the velocities of both phases,
     /// each weighted with its masses, after their update and before they are mapped.

@@ -12,6 +12,7 @@ use crate::law::LawSweep;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::transfer::Transfer;
 
 /// An even state that balances the load of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -68,13 +69,14 @@ fn traction<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfaceP
     }
 }
 
-impl<T, const D: usize, B, R, L, P> Stepper<T, D, B, R, L, P>
+impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
+    X: Transfer<T, D>,
 {
     /// The load of one surface, as an even state of the whole body.
     ///

@@ -9,7 +9,6 @@ use std::thread::{self, ThreadId};
 use materialpoint::basis::{BSpline, BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid};
 use materialpoint::law::ConstitutiveLaw;
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor, Shepard};
@@ -76,16 +75,14 @@ where
         *v = x.map(|x| 0.8 * (std::f64::consts::PI * x).sin());
     }
     let seen = Seen::default();
-    let mut stepper = Stepper::new(Setup {
+    let mut stepper = Stepper::new(Setup::new(
         grid,
         basis,
         reconstruction,
-        law: Watched(seen.clone()),
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
+        Watched(seen.clone()),
+        OnePhase,
         particles,
-        surface: Vec::new(),
-    })
+    ))
     .unwrap();
     let forcing = Face::all::<D>().fold(Forcing::none(), |forcing, face| {
         forcing.with_face(face, FaceCondition::roller(face.axis))
