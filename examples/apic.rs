@@ -3,7 +3,7 @@
 //! PIC gives particles the velocity that the grid has where they are. What the grid cannot show is lost, and
 //! a disc that spins soon stands still. APIC (Jiang, Schroeder, Selle, Teran & Stomakhin 2015; Jiang,
 //! Schroeder & Teran 2017) lets each particle keep the linear velocity about it too, and with it the angular
-//! momentum, to round-off.
+//! momentum: to round-off with splines, whose second moments are the same everywhere in the grid's inside.
 //!
 //! `cargo run --release --example apic`
 
@@ -87,7 +87,7 @@ impl<T: Scalar, const D: usize> Transfer<T, D> for Apic {
     }
 }
 
-/// What became of a disc that spins freely for one turn.
+/// What became of a disc that spins freely.
 #[derive(Clone, Copy, Debug)]
 pub struct Spin {
     /// Share of the angular momentum that is left, what particles hold about their own places included.
@@ -103,7 +103,7 @@ const RADIUS: f64 = 0.3;
 /// Angular velocity (1/s).
 const TURN: f64 = 1.0;
 
-/// Spins a disc by one turn; `moment` is what the transfer remembers of a particle.
+/// Spins a disc by so many turns; `moment` is what the transfer remembers of a particle.
 ///
 /// # Errors
 /// If something makes no sense.
@@ -111,6 +111,7 @@ pub fn spin<B, X>(
     basis: B,
     transfer: X,
     moment: fn(&X::Particle) -> SMatrix<f64, 2, 2>,
+    turns: f64,
 ) -> Result<Spin, Box<dyn Error>>
 where
     B: BasisFamily<f64, 2>,
@@ -139,7 +140,7 @@ where
         (angular, stepper.energy().kinetic)
     };
     let (angular, kinetic) = measure(&stepper);
-    let steps = (2.0 * std::f64::consts::PI / TURN / 1e-3).round() as usize;
+    let steps = (turns * 2.0 * std::f64::consts::PI / TURN / 1e-3).round() as usize;
     for _ in 0..steps {
         stepper.step(1e-3, &Forcing::none())?;
     }
@@ -161,9 +162,9 @@ fn cross(a: &Vector2<f64>, b: &Vector2<f64>) -> f64 {
 /// If something makes no sense.
 pub fn run() -> Result<[Spin; 3], Box<dyn Error>> {
     let nothing = |_: &()| SMatrix::zeros();
-    let flip = spin(BSpline::<2>, Flip, nothing)?;
-    let pic = spin(BSpline::<2>, Pic, nothing)?;
-    let apic = spin(BSpline::<2>, Apic, |own| own.moment)?;
+    let flip = spin(BSpline::<2>, Flip, nothing, 1.0)?;
+    let pic = spin(BSpline::<2>, Pic, nothing, 1.0)?;
+    let apic = spin(BSpline::<2>, Apic, |own| own.moment, 1.0)?;
     println!("after one turn    angular momentum   kinetic energy");
     for (name, left) in [("FLIP", flip), ("PIC", pic), ("APIC", apic)] {
         let Spin {
