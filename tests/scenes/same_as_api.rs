@@ -8,10 +8,11 @@ use materialpoint::basis::Linear;
 use materialpoint::error::StepError;
 use materialpoint::grid::{Face, Grid};
 use materialpoint::law::{
-    ConeMatch, ConstitutiveLaw, DruckerPrager, Hencky, Hill, LinearElastic, Logarithmic, Moduli, NeoHookean,
-    NewtonianFluid, StVenantKirchhoff, Strength, VonMises,
+    AnyLaw, ConeMatch, ConstitutiveLaw, DruckerPrager, Hencky, Hill, LinearElastic, Logarithmic, Moduli,
+    NeoHookean, NewtonianFluid, StVenantKirchhoff, Strength, VonMises,
 };
 use materialpoint::mass::VelocityMass;
+use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor};
@@ -19,6 +20,7 @@ use materialpoint::record::Record;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
 use materialpoint_command::run::{InSpace, RunError, run_in};
 use materialpoint_command::scene::Scene;
+use materialpoint_steppers::{Build, Parts};
 use nalgebra::SVector;
 
 /// Steps, and their size (s): a power of two, so that no sum of them is rounded.
@@ -37,7 +39,7 @@ struct Case {
 }
 
 impl Case {
-    fn scene<const D: usize>(&self) -> Scene {
+    fn scene<const D: usize>(&self, method: &str) -> Scene {
         let Self {
             law,
             large,
@@ -63,7 +65,7 @@ impl Case {
             "title = \"Box\"\n\n\
              [grid]\nmin = [{}]\nmax = [{}]\ncells = [{}]\n\n\
              [time]\nstep = {DT:?}\nend = {:?}\n\n\
-             [method]\nbasis = \"linear\"\nreconstruction = \"relaxed-taylor\"\n\n\
+             [method]\n{method}\n\n\
              [material]\nstrain = \"{}\"\nlaw.{law}\ndensity = 2.0\n\n\
              [[body]]\nmin = [{}]\nmax = [{}]\nparticles_per_cell = [{}]\n\
              velocity = [{velocity}]\n{stress}\ninitialise = \"exact\"\n{walls}",
@@ -79,11 +81,11 @@ impl Case {
         Scene::from_toml(&text, &[]).unwrap_or_else(|error| panic!("{error}\n{text}"))
     }
 
-    fn by_scene<const D: usize>(&self) -> Result<Particles<f64, D>, StepError>
+    fn by_scene<const D: usize>(&self, method: &str) -> Result<Particles<f64, D>, StepError>
     where
         Scene: InSpace<D>,
     {
-        match run_in::<D>(&self.scene::<D>(), None, &mut |_| {}) {
+        match run_in::<D>(&self.scene::<D>(method), None, &mut |_| {}) {
             Ok(outcome) => Ok(outcome.particles),
             Err(RunError::Stopped { source, .. }) => Err(source),
             Err(other) => panic!("{other}"),
@@ -107,14 +109,6 @@ impl Case {
         if self.stress != 0.0 {
             particles.start_under_stress(&law, |_, _| None).unwrap();
         }
-        let forcing = Face::all::<D>().fold(Forcing::none(), |forcing, face| {
-            let held = if D == 1 {
-                FaceCondition::fixed()
-            } else {
-                FaceCondition::roller(face.axis)
-            };
-            forcing.with_face(face, held)
-        });
         let mut simulation: Box<dyn Simulation<D>> = Box::new(
             Stepper::new(
                 Setup::new(grid, Linear, reconstruction, law, OnePhase, particles)
@@ -123,9 +117,38 @@ impl Case {
             .unwrap(),
         );
         for _ in 0..STEPS {
-            simulation.step(DT, &forcing)?;
+            simulation.step(DT, &walls())?;
         }
         Ok(simulation.particles())
+    }
+
+    /// The stepper that has the method's types, by its name.
+    fn by_name<const D: usize>(&self, method: Method, law: AnyLaw<f64, D>) -> Particles<f64, D>
+    where
+        Parts<f64, D>: Build<D>,
+    {
+        let grid = Grid::new(SVector::zeros(), SVector::repeat(1.0), [4; D]).unwrap();
+        let points = lattice(&grid, grid.min(), grid.max(), [3; D]);
+        let mut particles = Particles::at_rest(&points, 2.0);
+        for (v, (x, _)) in particles.velocity.iter_mut().zip(&points) {
+            v[0] = self.speed * x[0] * (1.0 - x[0]);
+        }
+        let parts = Parts {
+            grid,
+            law,
+            liquid: None,
+            velocity_mass: VelocityMass::Lumped,
+            virtual_points: false,
+            particles,
+            pores: Vec::new(),
+            surface: Vec::new(),
+            under_stress: false,
+        };
+        let mut simulation = parts.stepper(method).unwrap();
+        for _ in 0..STEPS {
+            simulation.step(DT, &walls()).unwrap();
+        }
+        simulation.particles()
     }
 
     fn compare<const D: usize, L, R>(&self, law: L, reconstruction: R)
@@ -136,7 +159,7 @@ impl Case {
         Scene: InSpace<D>,
     {
         let (scene, api) = (
-            self.by_scene::<D>().unwrap(),
+            self.by_scene::<D>(RELAXED).unwrap(),
             self.by_api(law, reconstruction).unwrap(),
         );
         assert_eq!(scene.position, api.position, "{}", self.law);
@@ -147,6 +170,21 @@ impl Case {
         assert!(moved > 1e-3, "nothing moves: {moved:e}");
     }
 }
+
+/// Every wall held, beyond one axis along its normal.
+fn walls<const D: usize>() -> Forcing<f64, D> {
+    Face::all::<D>().fold(Forcing::none(), |forcing, face| {
+        let held = if D == 1 {
+            FaceCondition::fixed()
+        } else {
+            FaceCondition::roller(face.axis)
+        };
+        forcing.with_face(face, held)
+    })
+}
+
+/// Lines of a scene that choose a method.
+const RELAXED: &str = "basis = \"linear\"\nreconstruction = \"relaxed-taylor\"";
 
 fn on_one_axis() -> RelaxedTaylor<f64, 1, 3> {
     RelaxedTaylor::for_basis(&Linear)
@@ -233,12 +271,73 @@ fn a_scene_beyond_hill_s_law_ends_in_the_error_of_the_api() {
         moduli: Moduli::uniaxial(8.0).unwrap(),
     };
     let (scene, api) = (
-        case.by_scene::<1>().unwrap_err(),
+        case.by_scene::<1>(RELAXED).unwrap_err(),
         case.by_api(law, on_one_axis()).unwrap_err(),
     );
     assert_eq!(scene, api);
     assert!(
         matches!(scene, StepError::Stress { step: 1, particle: 0, value, .. } if value >= 8.0),
         "{scene}"
+    );
+}
+
+/// The same of every method by name, with one law: a scene says nothing that the types' own steppers do not
+/// do, whatever the basis and the reconstruction.
+fn every_method<const D: usize>(law: &AnyLaw<f64, D>, methods: &[Method], elastic: &'static str)
+where
+    Parts<f64, D>: Build<D>,
+    Scene: InSpace<D>,
+{
+    let case = Case {
+        law: elastic,
+        large: true,
+        speed: 0.25,
+        stress: 0.0,
+    };
+    for &method in methods {
+        let (basis, degree) = (method.basis.name(), method.basis.degree());
+        let mut lines = format!(
+            "basis = \"{basis}\"\nreconstruction = \"{}\"",
+            method.reconstruction.name()
+        );
+        if let Basis::BSpline { .. } = method.basis {
+            lines += &format!("\ndegree = {degree}");
+        }
+        if method.subpoints > 1 {
+            lines += &format!("\nsubpoints = {}", method.subpoints);
+        }
+        if let ReconstructionKind::Taylor | ReconstructionKind::Spline = method.reconstruction {
+            lines += "\nvelocity_mass = \"lumped\"";
+        }
+        let (scene, api) = (
+            case.by_scene::<D>(&lines).unwrap(),
+            case.by_name(method, law.clone()),
+        );
+        assert_eq!(scene.position, api.position, "{method}");
+        assert_eq!(scene.velocity, api.velocity, "{method}");
+        assert_eq!(scene.stress, api.stress, "{method}");
+        let moved = api.displacement.iter().map(|u| u.norm()).fold(0.0, f64::max);
+        assert!(moved > 1e-3, "{method}: nothing moves: {moved:e}");
+    }
+}
+
+#[test]
+fn every_method_of_a_scene_is_the_stepper_of_its_name() {
+    let line: Vec<Method> = Method::all_in(1, 1)
+        .into_iter()
+        .chain([1, 3].map(|degree| Method::new(Basis::BSpline { degree }, ReconstructionKind::Taylor)))
+        .chain([Method::sub_points(3)])
+        .collect();
+    let moduli = Moduli::uniaxial(8.0).unwrap();
+    every_method::<1>(
+        &AnyLaw::new(NeoHookean { moduli }),
+        &line,
+        "neo-hookean = { youngs_modulus = 8.0 }",
+    );
+    let moduli = Moduli::from_young(8.0, 0.25).unwrap();
+    every_method::<2>(
+        &AnyLaw::new(NeoHookean { moduli }),
+        &Method::all_in(2, 1),
+        "neo-hookean = { youngs_modulus = 8.0, poissons_ratio = 0.25 }",
     );
 }
