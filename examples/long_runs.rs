@@ -256,12 +256,8 @@ fn reason(error: &StepError) -> String {
         StepError::Stress { .. } => "stress beyond E".into(),
         StepError::Invalid { name, value, .. } => format!("{name} {value:.1e}"),
         StepError::StepSize { .. } => "step".into(),
-        StepError::Friction { .. }
-        | StepError::FrictionFromGrid { .. }
-        | StepError::FrictionWithFlow { .. }
-        | StepError::PressureWithoutFlow { .. }
-        | StepError::RubbingAcross { .. }
-        | StepError::WallNotHeld { .. } => "wall".into(),
+        // What a forcing asks for, at the first step.
+        _ => "wall".into(),
     }
 }
 

@@ -8,6 +8,7 @@ use crate::grid::Face;
 
 /// A grid that cannot be built.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum GridError {
     /// A bound is infinite or not a number.
     #[error("grid: a bound of axis {axis} is not a finite number")]
@@ -38,6 +39,7 @@ pub enum GridError {
 
 /// A stepper that cannot be built.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SetupError {
     /// No particle at all.
     #[error("there is no particle: a run needs at least one")]
@@ -133,6 +135,7 @@ pub fn named(stress: &[(String, f64)]) -> String {
 
 /// A step that could not be completed; the particles hold the state in which it was noticed.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum StepError {
     /// A particle is no longer in the grid.
     #[error("step {step}: particle {particle} left the grid at {position:?} m")]
@@ -237,6 +240,7 @@ pub enum StepError {
 
 /// A saved state that a stepper cannot take over.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum RestoreError {
     /// It cannot be read, or ends early.
     #[error("the state cannot be read ({0})")]
