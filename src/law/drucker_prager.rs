@@ -7,7 +7,7 @@ pub use cone::{ConeMatch, Strength};
 use nalgebra::SMatrix;
 
 use self::cone::Cone;
-use super::elastic_stretch::{ElasticStretch, Principal, length, stored_energy, wave_modulus};
+use super::elastic_stretch::{ElasticStretch, PrincipalStretch, length, stored_energy, wave_modulus};
 use super::linear_elastic::hooke_strain_at;
 use super::von_mises::deviator;
 use super::{ConstitutiveLaw, Moduli};
@@ -100,7 +100,7 @@ impl<T: Scalar> DruckerPrager<T> {
 /// its shear only the part of the step in contact counts, or closing in one step would press the grains
 /// together by what they slid apart.
 #[inline(always)]
-fn close<T: Scalar, const D: usize>(trial: &mut Principal<T, D>, gap: T) {
+fn close<T: Scalar, const D: usize>(trial: &mut PrincipalStretch<T, D>, gap: T) {
     let change = trial.strain.sum();
     let rest = change + gap;
     let contact = if rest < T::zero() { rest / change } else { T::one() };

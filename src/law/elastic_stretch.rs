@@ -32,9 +32,9 @@ impl<T: Scalar, const D: usize> Default for ElasticStretch<T, D> {
 }
 
 impl<T: Scalar, const D: usize> ElasticStretch<T, D> {
-    /// Elastic trial: the whole increment stretches the material elastically.
+    /// Elastic trial: the whole increment `dt grad v` stretches the material elastically.
     #[inline(always)]
-    pub(super) fn carry(&mut self, increment: &SMatrix<T, D, D>) {
+    pub fn carry(&mut self, increment: &SMatrix<T, D, D>) {
         let f = SMatrix::identity() + increment;
         // Symmetric up to round-off, which must not pile up.
         self.b = symmetric(&(f * self.b * f.transpose()));
@@ -42,10 +42,10 @@ impl<T: Scalar, const D: usize> ElasticStretch<T, D> {
 
     /// In principal axes.
     #[inline(always)]
-    pub(super) fn principal(&self) -> Principal<T, D> {
+    pub fn principal(&self) -> PrincipalStretch<T, D> {
         let spectral = Spectral::of(&self.b);
         let squared = in_space(&spectral.values, self.off_plane);
-        Principal {
+        PrincipalStretch {
             strain: squared.map(|b| b.ln() / T::lit(2.0)),
             // The divided difference of ln(b)/2, whose values are next to equal where anything is left.
             shear: between(|p, q| spectral.rest()[(p, q)] / (squared[p] + squared[q])),
@@ -59,11 +59,7 @@ impl<T: Scalar, const D: usize> ElasticStretch<T, D> {
     ///
     /// Kirchhoff's stress `J sigma` is linear in the logarithmic strain, which leaves one equation for the
     /// volume, `ln J = J tr(sigma) / (3 K)`. It has a solution up to the mean stress `K / e`.
-    pub(super) fn under_stress(
-        moduli: &Moduli<T>,
-        stress: &SMatrix<T, D, D>,
-        off_plane: Option<T>,
-    ) -> Option<Self> {
+    pub fn under_stress(moduli: &Moduli<T>, stress: &SMatrix<T, D, D>, off_plane: Option<T>) -> Option<Self> {
         let two = T::lit(2.0);
         let spectral = Spectral::of(&symmetric(stress));
         // Of no strain off the plane.
@@ -75,7 +71,7 @@ impl<T: Scalar, const D: usize> ElasticStretch<T, D> {
         let (volume, mean) = (log_volume.exp(), moduli.bulk() * log_volume);
         let strain = stress.map(|s| (volume * s - mean) / (two * moduli.mu) + log_volume / three);
         let shear = between(|p, q| spectral.rest()[(p, q)] * volume / (two * moduli.mu));
-        let found = Principal {
+        let found = PrincipalStretch {
             spectral,
             strain,
             shear,
@@ -122,27 +118,61 @@ fn between<T: Scalar, const D: usize>(entry: impl Fn(usize, usize) -> T) -> SMat
 
 /// Length of a vector; that of zero has no derivative, not one that is no number.
 #[inline(always)]
-pub(super) fn length<T: Scalar>(vector: &Vector3<T>) -> T {
+pub fn length<T: Scalar>(vector: &Vector3<T>) -> T {
     if !is_plain::<T>() && vector.norm_squared() == T::zero() {
         return T::zero();
     }
     vector.norm()
 }
 
-/// An elastic stretch in its principal axes.
+/// An elastic stretch in its principal axes, where a plastic law of logarithmic strains returns it to its yield
+/// surface. Perfect plasticity by von Mises' yield stress, for instance, scales the deviator:
+///
+/// ```
+/// use materialpoint::law::{ElasticStretch, Moduli, deviator, length};
+/// use nalgebra::{SMatrix, matrix};
+///
+/// /// Cauchy stress (Pa) after an increment, Mises' stress `sqrt(6) mu |dev e|` at most `strength` (Pa).
+/// fn update(
+///     moduli: &Moduli<f64>,
+///     strength: f64,
+///     increment: &SMatrix<f64, 2, 2>,
+///     stretch: &mut ElasticStretch<f64, 2>,
+/// ) -> SMatrix<f64, 2, 2> {
+///     stretch.carry(increment);
+///     let mut trial = stretch.principal();
+///     let (shear, mean) = (deviator(&trial.strain), trial.strain.sum() / 3.0);
+///     let mises = 6.0_f64.sqrt() * moduli.mu * length(&shear);
+///     if mises > strength {
+///         let share = strength / mises;
+///         trial.strain = shear.map(|e| mean + share * e);
+///         trial.scale_shear(share);
+///         *stretch = trial.stretch();
+///     }
+///     trial.stress(moduli, trial.volume())
+/// }
+///
+/// let moduli = Moduli::from_young(200e9, 0.3)?;
+/// let mut stretch = ElasticStretch::default();
+/// let stress = update(&moduli, 250e6, &matrix![0.0, 0.02; 0.0, 0.0], &mut stretch);
+/// let shear = deviator(&stretch.principal().strain);
+/// assert!((6.0_f64.sqrt() * moduli.mu * length(&shear) / 250e6 - 1.0).abs() < 1e-12);
+/// assert!((stress[(0, 1)] / 250e6 * 3.0_f64.sqrt() - 1.0).abs() < 1e-2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Principal<T, const D: usize> {
+pub struct PrincipalStretch<T, const D: usize> {
     spectral: Spectral<T, D>,
     /// Elastic logarithmic strains, those in the grid's axes first.
-    pub(super) strain: Vector3<T>,
+    pub strain: Vector3<T>,
     /// Their shear in the principal axes, see [`Spectral::rest`].
     shear: SMatrix<T, D, D>,
 }
 
-impl<T: Scalar, const D: usize> Principal<T, D> {
+impl<T: Scalar, const D: usize> PrincipalStretch<T, D> {
     /// The stretch with these principal strains.
     #[inline(always)]
-    pub(super) fn stretch(&self) -> ElasticStretch<T, D> {
+    pub fn stretch(&self) -> ElasticStretch<T, D> {
         let squared = self.strain.map(|e| (e + e).exp());
         // The divided difference of exp(2 e) at values next to equal.
         let shear = |p: usize, q: usize| {
@@ -157,19 +187,19 @@ impl<T: Scalar, const D: usize> Principal<T, D> {
 
     /// Volume ratio of the elastic stretch.
     #[inline(always)]
-    pub(super) fn volume(&self) -> T {
+    pub fn volume(&self) -> T {
         self.strain.sum().exp()
     }
 
     /// Cauchy stress (Pa) of material with the volume ratio `j`.
     #[inline(always)]
-    pub(super) fn stress(&self, moduli: &Moduli<T>, j: T) -> SMatrix<T, D, D> {
+    pub fn stress(&self, moduli: &Moduli<T>, j: T) -> SMatrix<T, D, D> {
         let shear = |p: usize, q: usize| (moduli.mu + moduli.mu) * self.shear[(p, q)] / j;
         self.in_plane(&(kirchhoff(moduli, &self.strain) / j), shear)
     }
 
     /// Cauchy stress (Pa) along the axes that the grid does not have.
-    pub(super) fn off_plane_stress(&self, moduli: &Moduli<T>, j: T) -> T {
+    pub fn off_plane_stress(&self, moduli: &Moduli<T>, j: T) -> T {
         kirchhoff(moduli, &self.strain)[2] / j
     }
 
@@ -179,16 +209,17 @@ impl<T: Scalar, const D: usize> Principal<T, D> {
         self.spectral.with_values_and_rest(&values, shear)
     }
 
-    /// The deviator of the strain was scaled; so is its part off the diagonal.
+    /// To be called where the deviator of [`PrincipalStretch::strain`] was scaled: scales its part off the
+    /// diagonal, which only scalars with derivatives have.
     #[inline(always)]
-    pub(super) fn scale_shear(&mut self, factor: T) {
+    pub fn scale_shear(&mut self, factor: T) {
         if !is_plain::<T>() {
             self.shear *= factor;
         }
     }
 }
 
-/// Principal Kirchhoff stresses (Pa) of principal logarithmic strains, `lambda tr(e) + 2 mu e`.
+/// PrincipalStretch Kirchhoff stresses (Pa) of principal logarithmic strains, `lambda tr(e) + 2 mu e`.
 #[inline(always)]
 fn kirchhoff<T: Scalar>(moduli: &Moduli<T>, strain: &Vector3<T>) -> Vector3<T> {
     let isotropic = moduli.lambda * strain.sum();
@@ -196,7 +227,7 @@ fn kirchhoff<T: Scalar>(moduli: &Moduli<T>, strain: &Vector3<T>) -> Vector3<T> {
 }
 
 /// Strain energy per reference volume (J/m3) of principal logarithmic strains.
-pub(super) fn stored_energy<T: Scalar>(moduli: &Moduli<T>, strain: &Vector3<T>) -> T {
+pub fn stored_energy<T: Scalar>(moduli: &Moduli<T>, strain: &Vector3<T>) -> T {
     let trace = strain.sum();
     moduli.lambda * trace * trace / T::lit(2.0) + moduli.mu * strain.dot(strain)
 }
@@ -204,11 +235,7 @@ pub(super) fn stored_energy<T: Scalar>(moduli: &Moduli<T>, strain: &Vector3<T>) 
 /// `rho c^2` (Pa) of the fastest wave, from `J d sigma/dJ = (lambda + 2 mu)/J - sigma` along the most
 /// compressed axis. The lowest principal stress is taken from Gershgorin: exact where it lies along an axis,
 /// a bound elsewhere.
-pub(super) fn wave_modulus<T: Scalar, const D: usize>(
-    moduli: &Moduli<T>,
-    stress: &SMatrix<T, D, D>,
-    j: T,
-) -> T {
+pub fn wave_modulus<T: Scalar, const D: usize>(moduli: &Moduli<T>, stress: &SMatrix<T, D, D>, j: T) -> T {
     let bound = |a: usize| {
         let row_sum = stress.row(a).iter().fold(T::zero(), |sum, s| sum + s.abs());
         stress[(a, a)] + stress[(a, a)].abs() - row_sum

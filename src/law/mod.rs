@@ -18,7 +18,7 @@ mod von_mises;
 
 pub use any::AnyLaw;
 pub use drucker_prager::{ConeMatch, DruckerPrager, DruckerPragerState, Strength};
-pub use elastic_stretch::ElasticStretch;
+pub use elastic_stretch::{ElasticStretch, PrincipalStretch, length, stored_energy, wave_modulus};
 pub use hencky::Hencky;
 pub use hill::Hill;
 pub use linear_elastic::{LinearElastic, hooke_strain};
@@ -28,7 +28,7 @@ pub use neo_hookean::{DeformationGradient, NeoHookean};
 pub use newtonian_fluid::{NewtonianFluid, VolumeRatio};
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use sweep::{Bodies, LawSweep};
-pub use von_mises::{VonMises, VonMisesState};
+pub use von_mises::{VonMises, VonMisesState, deviator};
 
 use nalgebra::SMatrix;
 

@@ -87,9 +87,9 @@ impl<T: Scalar> VonMises<T> {
     }
 }
 
-/// Principal values of the deviator.
+/// PrincipalStretch values of the deviator.
 #[inline(always)]
-pub(super) fn deviator<T: Scalar>(strain: &Vector3<T>) -> Vector3<T> {
+pub fn deviator<T: Scalar>(strain: &Vector3<T>) -> Vector3<T> {
     let mean = strain.sum() / T::lit(3.0);
     strain.map(|e| e - mean)
 }
