@@ -20,12 +20,17 @@
 //! # }
 //! ```
 //!
+//! With the feature `testing` there are random layouts of particles too (`testing::layout`), which shrink to
+//! the one that is to blame.
+//!
 //! Tolerances follow from the number of operations and the machine epsilon of the scalar; none is a free
 //! choice of the caller.
 
 mod basis;
 mod failure;
 mod law;
+#[cfg(feature = "testing")]
+pub mod layout;
 mod phase;
 mod reconstruction;
 mod worst;

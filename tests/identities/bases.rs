@@ -127,7 +127,7 @@ where
         sums(basis, body)?;
         reproduces_linear(basis, body)
     }
-    let body = layout.body::<T>();
+    let body = layout.body::<T>().unwrap();
     both(&Linear, &body)?;
     both(&DualDomain::new(), &body)?;
     both(&BSpline::<1>, &body)?;

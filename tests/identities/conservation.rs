@@ -76,7 +76,7 @@ fn keeps_every_cell<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     gauss_points: usize,
     functions: usize,
 ) -> Result<(), TestCaseError> {
-    let body = layout.body::<T>();
+    let body = layout.body::<T>().unwrap();
     for i in 0..=D {
         for (number, balance) in balances(reconstruction, &body, i).iter().enumerate() {
             let n = body.bins.particles_in(number).len();
@@ -129,7 +129,7 @@ proptest! {
 fn stays_positive<T: Scalar, const D: usize, const NB: usize>(
     layout: &Layout<D>,
 ) -> Result<(), TestCaseError> {
-    let body = layout.body::<T>();
+    let body = layout.body::<T>().unwrap();
     let mut taylor = Taylor::<T, D, NB>::new();
     taylor.prepare(&body.cloud());
     let velocity = SVector::from_fn(|a, _| uneven::<T>(a + 5));
@@ -192,7 +192,7 @@ proptest! {
 /// own particles.
 fn reproduces_a_parabola(layout: &Layout<1>) -> Result<(), TestCaseError> {
     let (body, mut taylor) = (
-        layout.body::<f64>(),
+        layout.body::<f64>().unwrap(),
         Taylor::<f64, 1, 3>::new().with_virtual_points(true),
     );
     taylor.prepare(&body.cloud());
@@ -230,7 +230,7 @@ fn keeps_cells_relative_to_coefficients<const D: usize, const NB: usize>(
     layout: &Layout<D>,
     mut taylor: Taylor<f64, D, NB>,
 ) -> Result<(), TestCaseError> {
-    let body = layout.body::<f64>();
+    let body = layout.body::<f64>().unwrap();
     let balances = balances(&mut taylor, &body, 0);
     let coefficients = taylor.conserved_coefficients(&body.cloud(), |p| amount(&body, p).mass);
     for (k, &number) in body.bins.occupied().iter().enumerate() {
@@ -286,7 +286,7 @@ fn a_cluster_beside_the_centre_of_a_cell_does_not_make_a_huge_slope() {
             h: 1.0,
             particles: vec![vec![[Near(1, 2, exponent)]; 3]],
         };
-        let body = layout.body::<f64>();
+        let body = layout.body::<f64>().unwrap();
         let mut taylor = Taylor::<f64, 1, 3>::new();
         let balance = balances(&mut taylor, &body, 0)[0];
         // Densities are 3 at most.
@@ -314,7 +314,7 @@ fn the_spline_loses_amounts() {
         h: 1.0,
         particles: particles.collect(),
     };
-    let body = layout.body::<f64>();
+    let body = layout.body::<f64>().unwrap();
     let lost = |balances: &[Balance<f64>]| {
         let sum = |f: fn(&Balance<f64>) -> f64| balances.iter().map(f).sum::<f64>();
         (sum(|b| b.held) - sum(|b| b.streamed)).abs() / sum(|b| b.held_size)

@@ -12,7 +12,7 @@ use super::layout::{Layout, layouts};
 fn every_particle_is_between_its_edges<T: Scalar, const D: usize>(
     layout: &Layout<D>,
 ) -> Result<(), TestCaseError> {
-    let body = layout.body::<T>();
+    let body = layout.body::<T>().unwrap();
     for (p, x) in body.positions.iter().enumerate() {
         let cell = *body.bins.cell_of(p);
         prop_assert_eq!(body.grid.locate(x), Some(cell));
@@ -36,7 +36,7 @@ fn contains<T: Scalar, const D: usize>(grid: &Grid<T, D>, axis: usize, i: usize,
 
 /// The lists of the bins hold every particle once, in its own cell, ascending.
 fn lists_are_complete<const D: usize>(layout: &Layout<D>) -> Result<(), TestCaseError> {
-    let body = layout.body::<f64>();
+    let body = layout.body::<f64>().unwrap();
     let mut seen = 0;
     for number in 0..body.grid.cell_count() {
         let list = body.bins.particles_in(number);

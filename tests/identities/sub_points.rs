@@ -28,7 +28,7 @@ fn stream<T: Scalar, const D: usize, Q: Field<T>>(
 }
 
 fn one_is_shepard<T: Scalar, const D: usize>(layout: &Layout<D>) -> Result<(), TestCaseError> {
-    let body = layout.body::<T>();
+    let body = layout.body::<T>().unwrap();
     let plain = stream(Shepard, &body, uneven::<T>);
     let single = stream(SubPoints::default(), &body, uneven::<T>);
     prop_assert_eq!(plain, single);
@@ -41,7 +41,7 @@ fn spread_over_the_domain<T: Scalar, const D: usize>(
     per_axis: usize,
     layout: &Layout<D>,
 ) -> Result<(), TestCaseError> {
-    let body = layout.body::<T>();
+    let body = layout.body::<T>().unwrap();
     let grid = &body.grid;
     let points = stream(SubPoints::new(per_axis).unwrap(), &body, |_| T::one());
     let each = per_axis.pow(D as u32);
@@ -73,7 +73,7 @@ fn forces_stay_in_the_material<const D: usize>(
     per_axis: usize,
     layout: &Layout<D>,
 ) -> Result<(), TestCaseError> {
-    let body = layout.body::<f64>();
+    let body = layout.body::<f64>().unwrap();
     let grid = &body.grid;
     let mut basis = DualDomain::new();
     basis.take_in(grid, &body.bins);
