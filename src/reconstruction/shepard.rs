@@ -1,6 +1,7 @@
 //! Shepard: the mapping of the plain material point method.
 
 use super::{Cloud, Point, Reconstruction};
+use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::scalar::Scalar;
 
@@ -8,6 +9,13 @@ use crate::scalar::Scalar;
 /// 1994), which Sulsky & Gong (2016) recognised as Shepard interpolation. Keeps mass and momentum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shepard;
+
+impl Shepard {
+    /// The same for every basis, as the other reconstructions have it.
+    pub fn for_basis<T: Scalar, const D: usize, B: BasisFamily<T, D>>(_basis: &B) -> Self {
+        Self
+    }
+}
 
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
     const FIELDS_AT_PARTICLES: bool = true;

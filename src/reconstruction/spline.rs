@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use super::{Cloud, Point, Reconstruction};
+use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
@@ -37,6 +38,11 @@ struct Factor<T> {
 }
 
 impl<T: Scalar> CubicSpline<T> {
+    /// For a basis, as [`CubicSpline::for_degree`] of its degree.
+    pub fn for_basis<B: BasisFamily<T, 1>>(basis: &B) -> Self {
+        Self::for_degree(basis.degree())
+    }
+
     /// For a basis of degree `degree`: two Gauss points on each cell, or for B-splines of degree 2 and more
     /// on each half of it (Tielen et al.).
     pub fn for_degree(degree: usize) -> Self {

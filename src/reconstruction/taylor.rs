@@ -16,6 +16,7 @@ use virtual_points::Lent;
 
 use super::gauss::GaussRule;
 use super::{BatchStatus, Cloud, Kept, Patch, Point, Reconstruction, Values};
+use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::grid::Cell;
 use crate::parallel::{self, each_span};
@@ -133,6 +134,11 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
     /// The method as published: two Gauss points per cell and axis.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// For a basis, as [`Taylor::for_degree`] of its degree.
+    pub fn for_basis<B: BasisFamily<T, D>>(basis: &B) -> Self {
+        Self::for_degree(basis.degree())
     }
 
     /// For a basis of degree `degree`: two Gauss points per cell and axis as published for degrees 1 and 2,

@@ -1,4 +1,5 @@
-//! Random layouts of particles, and random increments, for property tests with `proptest` (feature `testing`).
+//! Random layouts of particles and random increments for property tests with `proptest`
+//! (feature `testing`).
 //!
 //! A layout lists, cell by cell, the particles' places within the cell. A place is a fraction of the cell, a
 //! point very near one, or anywhere; a cell's list may be empty, spread, repeat one place, or crowd around
