@@ -4,7 +4,7 @@ use std::io;
 
 use thiserror::Error;
 
-use crate::grid::Face;
+use crate::face::Face;
 
 /// A grid that cannot be built.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -61,6 +61,7 @@ pub use nalgebra;
 
 pub mod basis;
 pub mod error;
+mod face;
 pub mod field;
 pub mod grid;
 pub mod law;

@@ -1,9 +1,8 @@
 //! The fixed background grid: a box of equal cells.
 
-mod face;
 mod window;
 
-pub use face::{Face, Side};
+pub use crate::face::{Face, Side};
 pub use window::Window;
 
 use nalgebra::SVector;
