@@ -1,6 +1,7 @@
 //! One binary for all integration tests: shared helpers compile once.
 
 mod allocation;
+mod architecture;
 mod boundaries;
 mod cases;
 mod command;
