@@ -144,6 +144,12 @@ pub enum Property {
     LiquidEnergy,
     /// What the liquid adds to the stress works as much as the energy of the liquid grows.
     PoreStressIsWork,
+    /// A uniform motion stays one, and what particles remember of it adds nothing.
+    UniformVelocity,
+    /// The momentum of the particles is that of the DOFs.
+    TransferKeepsMomentum,
+    /// A velocity that is a linear function of place comes back as it was.
+    LinearVelocity,
 }
 
 impl fmt::Display for Property {
@@ -212,6 +218,9 @@ impl fmt::Display for Property {
             Self::FlowShares => "solid and liquid change the pressure by their shares of the volume",
             Self::LiquidStiffness => "pressure over change of volume is `liquid_stiffness`",
             Self::LiquidEnergy => "the liquid's energy is the work of its pressure",
+            Self::UniformVelocity => "a uniform motion comes back from the grid as it was",
+            Self::TransferKeepsMomentum => "particles have the momentum of the DOFs",
+            Self::LinearVelocity => "a linear velocity comes back from the grid as it was",
             Self::PoreStressIsWork => "what the liquid adds to the stress works as its energy grows",
         };
         f.write_str(words)

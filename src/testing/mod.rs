@@ -33,6 +33,7 @@ mod law;
 pub mod layout;
 mod phase;
 mod reconstruction;
+mod transfer;
 mod worst;
 
 pub use basis::{BasisClaims, check_basis};
@@ -40,3 +41,4 @@ pub use failure::{Expected, Failure, Place, Property};
 pub use law::{LawClaims, LawSample, check_law};
 pub use phase::{PhaseSample, check_phase};
 pub use reconstruction::{Measure, ReconstructionClaims, check_reconstruction};
+pub use transfer::{TransferClaims, check_transfer};

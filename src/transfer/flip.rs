@@ -90,6 +90,34 @@ pub struct GridVelocity<T, const D: usize> {
 const NO_SPREAD: f64 = 1e-6;
 
 impl<T: Scalar, const D: usize> GridVelocity<T, D> {
+    /// Of no DOF yet.
+    pub(crate) fn none(dt: T, cell_size: SVector<T, D>) -> Self {
+        Self {
+            dt,
+            velocity: SVector::zeros(),
+            acceleration: SVector::zeros(),
+            gradient: SMatrix::zeros(),
+            moment: SMatrix::zeros(),
+            second_moment: SVector::zeros(),
+            cell_size,
+        }
+    }
+
+    /// Adds what is seen of a DOF, `offset` (m) away from the particle, that has a velocity and an acceleration.
+    pub(crate) fn see(
+        &mut self,
+        phi: T,
+        gradient: &SVector<T, D>,
+        offset: &SVector<T, D>,
+        (velocity, acceleration): (&SVector<T, D>, &SVector<T, D>),
+    ) {
+        self.velocity += velocity * phi;
+        self.acceleration += acceleration * phi;
+        self.gradient += velocity * gradient.transpose();
+        self.moment += velocity * (offset * phi).transpose();
+        self.second_moment += offset.component_mul(offset) * phi;
+    }
+
     /// The linear velocity nearest to those of the DOFs (1/s): [`GridVelocity::moment`] over
     /// [`GridVelocity::second_moment`]. Where a particle lies on the only DOF that it sees along an axis,
     /// both vanish, and their limit is [`GridVelocity::gradient`]: for linear functions they are the same

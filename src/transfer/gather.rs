@@ -4,6 +4,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Sweep;
+use super::flip::GridVelocity;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::places::DofPlaces;
 use crate::basis::BasisFamily;
@@ -68,23 +69,17 @@ fn seen_from<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     [velocities, accelerations]: [&[SVector<T, D>]; 2],
     places: &DofPlaces<T, D>,
 ) -> Seen<T, D> {
-    let (mut velocity, mut acceleration, mut spread) =
-        (SVector::zeros(), SVector::zeros(), SVector::<T, D>::zeros());
-    let (mut gradient, mut moment) = (SMatrix::<T, D, D>::zeros(), SMatrix::<T, D, D>::zeros());
-    basis.for_each(grid, cell, x, |i, phi, slope| {
-        let (v, offset) = (velocities[i], places.offset(i, x));
-        velocity += v * phi;
-        acceleration += accelerations[i] * phi;
-        gradient += v * slope.transpose();
-        moment += v * (offset * phi).transpose();
-        spread += offset.component_mul(&offset) * phi;
+    let mut seen = GridVelocity::none(T::zero(), SVector::zeros());
+    basis.for_each(grid, cell, x, |i, phi, gradient| {
+        let offset = places.offset(i, x);
+        seen.see(phi, &gradient, &offset, (&velocities[i], &accelerations[i]));
     });
     Seen {
-        velocity: velocity.into(),
-        acceleration: acceleration.into(),
-        gradient: rows(&gradient),
-        moment: rows(&moment),
-        second_moment: spread.into(),
+        velocity: seen.velocity.into(),
+        acceleration: seen.acceleration.into(),
+        gradient: rows(&seen.gradient),
+        moment: rows(&seen.moment),
+        second_moment: seen.second_moment.into(),
     }
 }
 

@@ -1,10 +1,11 @@
-//! The crate's own families, reconstructions, laws and phases under the checks of `materialpoint::testing`,
+//! The crate's own families, reconstructions, laws, phases and transfers under the checks of `materialpoint::testing`,
 //! and mistakes that the checks must find.
 
 mod basis;
 mod law;
 mod phase;
 mod reconstruction;
+mod transfer;
 
 use std::collections::BTreeSet;
 use std::fmt::Debug;
@@ -42,6 +43,7 @@ fn planted_mistakes_are_found_and_named() {
         law::mistakes(),
         reconstruction::mistakes(),
         phase::mistakes(),
+        transfer::mistakes(),
     ];
     let all = || kinds.iter().flatten();
     let wrong: Vec<_> = all()
