@@ -21,10 +21,10 @@ const CELLS: usize = 4;
 /// Length of the kick (s).
 const STEP: f64 = 0.01;
 
-/// Checks that `transfer` gives particles no velocity that is not the grid's: a uniform motion stays one under
-/// a uniform acceleration, and what particles remember then adds nothing to it; the momentum of the particles
-/// is that of the DOFs; a linear velocity comes back if, and only if, that is claimed. A transfer that is not
-/// [from the grid](Transfer::FROM_GRID) has nothing to be checked.
+/// Checks that `transfer` gives particles no velocity that is not the grid's: a uniform motion stays one
+/// under a uniform acceleration, and what particles remember then adds nothing to it; the momentum of the
+/// particles is that of the DOFs; a linear velocity comes back if, and only if, that is claimed. A transfer
+/// that is not [from the grid](Transfer::FROM_GRID) has nothing to be checked.
 ///
 /// The particles lie in two cells an axis among quadratic B-splines, at uneven places and with uneven masses.
 ///

@@ -103,7 +103,7 @@ impl<T: Scalar, const D: usize> GridVelocity<T, D> {
         }
     }
 
-    /// Adds what is seen of a DOF, `offset` (m) away from the particle, that has a velocity and an acceleration.
+    /// Adds what is seen of a DOF with a velocity and an acceleration, `offset` (m) away from the particle.
     pub(crate) fn see(
         &mut self,
         phi: T,
