@@ -155,6 +155,7 @@ where
         let fitted = Fitted {
             basis: &self.basis,
             cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
+            domains: self.particles.domains.views(),
             reconstruction: &mut self.reconstruction,
             spans: &mut self.spans,
             batched,
@@ -289,6 +290,7 @@ where
         let fitted = Fitted {
             basis: &self.basis,
             cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
+            domains: self.particles.domains.views(),
             reconstruction: &mut self.reconstruction,
             spans: &mut self.spans,
             batched,

@@ -10,18 +10,22 @@ use super::p2g::Parts;
 use super::sums::Sum;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
+use crate::particles::DomainViews;
 use crate::scalar::Scalar;
 
 /// DOFs that are kept at hand, enough for the cubic B-splines of a cell in three dimensions; any more are
 /// added directly.
 const AT_HAND: usize = 64;
 
+/// A cell, and a point of it.
+type Place<'a, T, const D: usize> = (&'a Cell<D>, &'a SVector<T, D>);
+
 /// Sums of the DOFs of a cell, in the order in which the basis visits them: the same one for every point of
 /// the cell.
 pub(super) struct StencilSums<'a, T, const D: usize, B, const S: usize, const C: usize, const G: usize> {
     basis: &'a B,
     grid: &'a Grid<T, D>,
-    cell: Option<(&'a Cell<D>, &'a SVector<T, D>)>,
+    cell: Option<Place<'a, T, D>>,
     sums: [Sum<T, D, S, C, G>; AT_HAND],
 }
 
@@ -38,23 +42,23 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, const S: usize, const 
         }
     }
 
-    /// Adds `parts`, tensors by coordinates, at every DOF that `x` in `cell` sees. `sink(dof, sum)` takes the
-    /// sums of the cell before.
+    /// Adds `parts`, tensors by coordinates, at every DOF that particle `p` of these domains sees from its
+    /// place. `sink(dof, sum)` takes the sums of the cell before.
     #[inline(always)]
     pub(super) fn add(
         &mut self,
-        cell: &'a Cell<D>,
-        x: &'a SVector<T, D>,
+        (p, place): (usize, Place<'a, T, D>),
+        domains: &DomainViews<'_, T, D>,
         parts: &Parts<T, D, S, C, G>,
         sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
     ) {
-        if self.cell.is_none_or(|(last, _)| last != cell) {
+        if self.cell.is_none_or(|(last, _)| last != place.0) {
             self.flush(sink);
-            self.cell = Some((cell, x));
+            self.cell = Some(place);
         }
         let mut k = 0;
         let sums = &mut self.sums;
-        self.basis.for_each(self.grid, cell, x, |dof, phi, gradient| {
+        domains.for_each((self.basis, self.grid), p, place, |dof, phi, gradient| {
             match sums.get_mut(k) {
                 Some(sum) => sum.add(parts, phi, &gradient),
                 None => {
