@@ -13,8 +13,9 @@ use crate::testing::worst::Worst;
 
 /// Sizes along the axes as shares of the greatest, each domain in turn with another one along an axis.
 const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
-/// Greatest reach of edge vectors to each side, in cells.
-const REACH: f64 = 0.5;
+/// Greatest reach of edge vectors to each side, in cells: less than a half, so that no two corners of a domain
+/// are on edges at once, where slopes jump.
+const REACH: f64 = 0.45;
 /// Share to which a domain shrinks that is to be almost a point.
 const SMALL: f64 = 1.0 / 1024.0;
 /// Means over domains divide by their lengths, the least of which is seven to a cell: round-off grows so.
@@ -248,7 +249,8 @@ fn factors<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
 }
 
 /// Gradients lie between the differences to both sides, or beyond by what functions bend in a step: by one
-/// over the half length at most, as the mean of a hat does, whose slope changes by 2 across its node.
+/// over the half length at most, as the mean of a hat does, whose slope changes by 2 across its node. What
+/// becomes of a domain that a wall meets is the basis's own affair.
 fn derivatives<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
@@ -262,7 +264,11 @@ fn derivatives<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     {
         let cell = cell_of(grid, x)?;
         let x = derivative::inside(grid, &cell, x);
-        let visitor = Visitor::Over(domain::<T, D, B>(grid, turn));
+        let domain = domain::<T, D, B>(grid, turn);
+        if reaches_a_wall(grid, &x, &domain) {
+            continue;
+        }
+        let visitor = Visitor::Over(domain);
         let here = Sample::new(basis, grid, &cell, &x, visitor)?;
         for axis in 0..D {
             let h = grid.cell_size()[axis];
@@ -285,4 +291,17 @@ fn derivatives<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
         }
     }
     worst.judge(Property::GradientsAreDerivatives, true)
+}
+
+/// Whether a domain, or one a step beside it, reaches beyond the grid.
+fn reaches_a_wall<T: Scalar, const D: usize>(
+    grid: &Grid<T, D>,
+    x: &SVector<T, D>,
+    domain: &SMatrix<T, D, D>,
+) -> bool {
+    (0..D).any(|a| {
+        let margin = grid.cell_size()[a] * T::lit(derivative::STEP);
+        let reach = domain.row(a).iter().fold(margin, |sum, edge| sum + edge.abs());
+        x[a] - reach < grid.min()[a] || x[a] + reach > grid.max()[a]
+    })
 }
