@@ -54,6 +54,12 @@ pub enum SetupError {
         /// Number of positions.
         expected: usize,
     },
+    /// Domains that the basis does not ask for.
+    #[error("particles have {name}, which the basis does not ask for; clear Particles::domains")]
+    UnwantedDomains {
+        /// Name of the field at fault.
+        name: &'static str,
+    },
     /// A reconstruction that knows no liquid beyond one axis.
     #[error(
         "relaxed Taylor least squares know one phase only beyond one axis so far; with a liquid that flows use Shepard or Taylor"

@@ -7,6 +7,7 @@ mod cases;
 mod command;
 mod conservation;
 mod convergence;
+mod domains;
 mod examples;
 mod golden;
 mod hard_cases;

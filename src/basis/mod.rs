@@ -4,12 +4,14 @@
 //! does the same in a few lines (see `examples/own_basis.rs`) or implements [`BasisFamily`] directly.
 
 mod bspline;
+mod domain;
 mod dual_domain;
 mod interpolant;
 mod linear;
 pub mod tensor;
 
 pub use bspline::BSpline;
+pub use domain::Domain;
 pub use dual_domain::DualDomain;
 pub use interpolant::Interpolant;
 pub(crate) use interpolant::places_along;
@@ -19,7 +21,7 @@ pub use tensor::{AxisBasis, AxisCell, Factors, Functions};
 
 use std::ops::Range;
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use crate::grid::{Cell, Face, Grid, Side};
 use crate::particles::Bins;
@@ -29,7 +31,7 @@ use crate::simd::Lanes;
 /// What a family is at points that stand still, where nothing crosses from cell to cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FixedPoints {
-    /// The same as at those that move.
+    /// The same as at those that move; particles with a [`Domain`] are no points.
     Alike,
     /// [`Linear`] functions of the same DOFs, whose values are also those at points that move.
     Linear,
@@ -81,6 +83,11 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
     /// has said so.
     const HOLDS_ABOUT: bool = false;
 
+    /// What the functions at a particle are averaged over. Other than [`Domain::Point`] it wants an own
+    /// [`BasisFamily::for_each_over`] and, of a product over sizes, [`BasisFamily::factors_over`]; everything
+    /// else of this trait is then asked of points, whose domain has vanished.
+    const DOMAIN: Domain = Domain::Point;
+
     /// What [`BasisFamily::for_each_at_fixed_point`] visits.
     const AT_FIXED_POINTS: FixedPoints = FixedPoints::Alike;
 
@@ -100,6 +107,26 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
             value: nothing,
             slope: nothing,
         }
+    }
+
+    /// The same over particles of these half lengths along each axis, in cell sizes, whose centres are at
+    /// `unit`. Only asked where [`BasisFamily::WIDTH`] is not zero and [`BasisFamily::DOMAIN`] is a size.
+    #[inline(always)]
+    fn factors_over<K: Lanes<T>>(
+        &self,
+        k: K,
+        grid: &Grid<T, D>,
+        cell: &Cell<D>,
+        unit: &[K::V; D],
+        _half: &[K::V; D],
+    ) -> Factors<K::V, D> {
+        const {
+            assert!(
+                Self::WIDTH == 0 || !matches!(Self::DOMAIN, Domain::Size { .. }),
+                "DOMAIN and WIDTH want an own `factors_over`"
+            )
+        };
+        self.factors(k, grid, cell, unit)
     }
 
     /// Number of a cell's first DOF along each axis, in the whole grid; likewise.
@@ -132,6 +159,30 @@ pub trait BasisFamily<T: Scalar, const D: usize>: Clone + Send + Sync {
         x: &SVector<T, D>,
         f: impl FnMut(usize, T, SVector<T, D>),
     );
+
+    /// The same over the `domain` of a particle with its centre at `x` of `cell`: half its edge vectors (m),
+    /// one in each column, along the axes where sizes are asked for. Only asked where
+    /// [`BasisFamily::DOMAIN`] is not that of points.
+    ///
+    /// The DOFs are those that [`BasisFamily::for_each`] visits in this cell, in the same order, whatever the
+    /// domain.
+    #[inline(always)]
+    fn for_each_over(
+        &self,
+        grid: &Grid<T, D>,
+        cell: &Cell<D>,
+        x: &SVector<T, D>,
+        _domain: &SMatrix<T, D, D>,
+        f: impl FnMut(usize, T, SVector<T, D>),
+    ) {
+        const {
+            assert!(
+                !Self::DOMAIN.is_asked_for(),
+                "DOMAIN wants an own `for_each_over`"
+            )
+        };
+        self.for_each(grid, cell, x, f);
+    }
 
     /// The same for a quadrature point that stands still. Families that smooth their gradients against grid
     /// crossing (dual domain) give the plain ones here, since nothing crosses.
@@ -220,5 +271,9 @@ pub(crate) const fn constants_agree<T: Scalar, const D: usize, B: BasisFamily<T,
     assert!(
         B::WIDTH <= MOST_WIDTH,
         "WIDTH is at most `basis::tensor::MOST_WIDTH`"
+    );
+    assert!(
+        B::WIDTH == 0 || !matches!(B::DOMAIN, Domain::Edges),
+        "functions over edge vectors are no products along the axes: WIDTH is zero"
     );
 }

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
-use super::BasisFamily;
+use super::{BasisFamily, Domain};
 use crate::grid::{Cell, Face, Grid, Side};
 use crate::scalar::Scalar;
 use crate::simd::{Lanes, One, each};
@@ -58,6 +58,22 @@ pub trait AxisBasis<T: Scalar, const W: usize>: Send + Sync {
     #[inline(always)]
     fn first_dof(&self, at: AxisCell) -> usize {
         at.cell
+    }
+
+    /// Whether particles have a size over which the functions are averaged, see [`BasisFamily::DOMAIN`].
+    const DOMAIN: Domain = Domain::Point;
+
+    /// The same over particles whose half length is `half`, in cell sizes, with their centres at `unit`. Only
+    /// asked where [`AxisBasis::DOMAIN`] is a size.
+    #[inline(always)]
+    fn evaluate_over<K: Lanes<T>>(&self, k: K, at: AxisCell, unit: K::V, _half: K::V) -> Functions<K::V, W> {
+        const {
+            assert!(
+                !Self::DOMAIN.is_asked_for(),
+                "DOMAIN wants an own `evaluate_over`"
+            )
+        };
+        self.evaluate(k, at, unit)
     }
 
     /// Whether a wall at an end is held about only, see [`BasisFamily::HOLDS_ABOUT`].
@@ -116,6 +132,23 @@ pub fn factors<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>, K:
         k,
         #[inline(always)]
         |axis| family.evaluate(k, axis_cell(grid, cell, axis), unit[axis]),
+    )
+}
+
+/// The same over particles of the half lengths `half`, in cell sizes.
+#[inline(always)]
+pub fn factors_over<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>, K: Lanes<T>>(
+    family: &A,
+    k: K,
+    grid: &Grid<T, D>,
+    cell: &Cell<D>,
+    unit: &[K::V; D],
+    half: &[K::V; D],
+) -> Factors<K::V, D> {
+    factors_of(
+        k,
+        #[inline(always)]
+        |axis| family.evaluate_over(k, axis_cell(grid, cell, axis), unit[axis], half[axis]),
     )
 }
 
@@ -179,8 +212,10 @@ pub fn dofs<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
     grid.window().shape().map(|cells| family.dofs_on_axis(cells))
 }
 
-/// DOFs that points in the cells with numbers from that of `first` to that of `last` see: the numbers of the
-/// DOFs of a cell grow with its own.
+/// DOFs that points in the cells with numbers from that of `first` to that of `last` see. Along each axis the
+/// numbers of the DOFs of a cell do not fall as its own grows. So none has lower ones than the first cell or
+/// one of those that begin a row, layer and so on after it, and none higher ones than the last cell or one
+/// that ends a row or layer before it: where the stencil of an end cell lies on one side of it, those do.
 pub fn dof_window<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     family: &B,
     grid: &Grid<T, D>,
@@ -188,11 +223,31 @@ pub fn dof_window<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     last: &Cell<D>,
 ) -> Range<usize> {
     let (mut low, mut high) = (usize::MAX, 0);
-    for cell in [first, last] {
+    let mut see = |cell: &Cell<D>| {
         family.for_each(grid, cell, &grid.centre(cell), |dof, _, _| {
             low = low.min(dof);
             high = high.max(dof + 1);
         });
+    };
+    see(first);
+    see(last);
+    let (lowest, shape) = (grid.window().first(), grid.window().shape());
+    let between = grid.linear(first)..=grid.linear(last);
+    for axis in 1..D {
+        let (mut begin, mut end) = (*first, *last);
+        begin[axis] += 1;
+        end[axis] = end[axis].saturating_sub(1);
+        for below in 0..axis {
+            begin[below] = lowest[below];
+            end[below] = lowest[below] + shape[below] as u32 - 1;
+        }
+        for cell in [begin, end] {
+            let inside =
+                (cell[axis] as usize) < lowest[axis] as usize + shape[axis] && cell[axis] >= lowest[axis];
+            if inside && between.contains(&grid.linear(&cell)) {
+                see(&cell);
+            }
+        }
     }
     low..high
 }
@@ -229,6 +284,35 @@ pub fn for_each<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
         let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
         (family.first_dof(at), family.evaluate(One, at, unit))
     });
+    product_of_rows(grid, &rows, |cells| family.dofs_on_axis(cells), f);
+}
+
+/// The same over the size of a particle, half its edge vectors.
+#[inline(always)]
+pub fn for_each_over<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
+    family: &A,
+    grid: &Grid<T, D>,
+    cell: &Cell<D>,
+    x: &SVector<T, D>,
+    domain: &SMatrix<T, D, D>,
+    f: impl FnMut(usize, T, SVector<T, D>),
+) {
+    const {
+        assert!(
+            !matches!(A::DOMAIN, Domain::Edges),
+            "an axis has sizes, no edge vectors: implement `BasisFamily`"
+        )
+    };
+    let inverse = grid.inverse_cell_size();
+    let rows = each(
+        #[inline(always)]
+        |axis| {
+            let at = axis_cell(grid, cell, axis);
+            let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
+            let half = domain[(axis, axis)] * inverse[axis];
+            (family.first_dof(at), family.evaluate_over(One, at, unit, half))
+        },
+    );
     product_of_rows(grid, &rows, |cells| family.dofs_on_axis(cells), f);
 }
 
@@ -330,6 +414,9 @@ macro_rules! tensor_product_family {
             const HOLDS_ABOUT: bool =
                 <$family as $crate::basis::AxisBasis<T, $width>>::HOLDS_ABOUT;
 
+            const DOMAIN: $crate::basis::Domain =
+                <$family as $crate::basis::AxisBasis<T, $width>>::DOMAIN;
+
             #[inline(always)]
             fn factors<K: $crate::simd::Lanes<T>>(
                 &self,
@@ -339,6 +426,18 @@ macro_rules! tensor_product_family {
                 unit: &[K::V; D],
             ) -> $crate::basis::tensor::Factors<K::V, D> {
                 $crate::basis::tensor::factors::<T, D, $width, _, K>(self, k, grid, cell, unit)
+            }
+
+            #[inline(always)]
+            fn factors_over<K: $crate::simd::Lanes<T>>(
+                &self,
+                k: K,
+                grid: &$crate::grid::Grid<T, D>,
+                cell: &$crate::grid::Cell<D>,
+                unit: &[K::V; D],
+                half: &[K::V; D],
+            ) -> $crate::basis::tensor::Factors<K::V, D> {
+                $crate::basis::tensor::factors_over::<T, D, $width, _, K>(self, k, grid, cell, unit, half)
             }
 
             #[inline(always)]
@@ -388,6 +487,18 @@ macro_rules! tensor_product_family {
                 f: impl FnMut(usize, T, ::nalgebra::SVector<T, D>),
             ) {
                 $crate::basis::tensor::for_each::<T, D, $width, _>(self, grid, cell, x, f);
+            }
+
+            #[inline(always)]
+            fn for_each_over(
+                &self,
+                grid: &$crate::grid::Grid<T, D>,
+                cell: &$crate::grid::Cell<D>,
+                x: &::nalgebra::SVector<T, D>,
+                domain: &::nalgebra::SMatrix<T, D, D>,
+                f: impl FnMut(usize, T, ::nalgebra::SVector<T, D>),
+            ) {
+                $crate::basis::tensor::for_each_over::<T, D, $width, _>(self, grid, cell, x, domain, f);
             }
 
             fn dof_window(

@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 
-use super::Particles;
+use super::{Domains, Particles};
 use crate::scalar::Scalar;
 
 impl<T: Scalar, const D: usize, S: Clone, P: Clone> Particles<T, D, S, P> {
@@ -27,6 +27,10 @@ impl<T: Scalar, const D: usize, S, P> Particles<T, D, S, P> {
             volume: self.volume.into_iter().map(|v| U::lit(v.primal())).collect(),
             state: vec![S2::default(); n],
             phase: vec![P2::default(); n],
+            domains: Domains {
+                half_lengths: vectors(self.domains.half_lengths),
+                half_edges: vectors(self.domains.half_edges),
+            },
         }
     }
 }
@@ -46,6 +50,7 @@ impl<T, const D: usize, S, P> Particles<T, D, S, P> {
             volume: self.volume,
             state,
             phase: self.phase,
+            domains: self.domains,
         }
     }
 }

@@ -3,12 +3,15 @@
 mod bearable;
 mod bins;
 mod cast;
+mod domains;
 mod lattice;
 mod movable;
 mod start;
 
 pub(crate) use bins::settle;
 pub use bins::{Bins, Outside};
+pub use domains::Domains;
+pub(crate) use domains::{DomainViews, Sites};
 pub use lattice::{Lattice, lattice};
 pub(crate) use movable::{Material, ParticleViews, Places};
 
@@ -45,6 +48,9 @@ pub struct Particles<T, const D: usize, S = (), P = ()> {
     pub state: Vec<S>,
     /// Data of the second phase.
     pub phase: Vec<P>,
+    /// Domains, for a basis that asks for them: empty before the start if they are to be found from the
+    /// layout, and always where the basis asks for none.
+    pub domains: Domains<T, D>,
 }
 
 impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<T, D, S, P> {
@@ -69,6 +75,7 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
             volume,
             state: vec![S::default(); n],
             phase: vec![P::default(); n],
+            domains: Domains::none(),
         }
     }
 
@@ -104,6 +111,7 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
             volume: pick(&self.volume, numbers),
             state: numbers.iter().flat_map(|&p| state_of(p)).copied().collect(),
             phase: pick(&self.phase, numbers),
+            domains: self.domains.picked(numbers),
         }
     }
 
@@ -117,10 +125,12 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
             state: &mut self.state,
             numbers_each,
             phase: &mut self.phase,
+            half_lengths: &self.domains.half_lengths,
+            half_edges: &mut self.domains.half_edges,
         }
     }
 
-    /// Bytes that one particle takes in these arrays.
+    /// Bytes that one particle takes in these arrays, without a domain.
     pub fn bytes_per_particle() -> usize {
         4 * size_of::<SVector<T, D>>()
             + size_of::<SMatrix<T, D, D>>()
@@ -143,6 +153,7 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
             + (self.mass.capacity() + self.volume.capacity()) * size_of::<T>()
             + allocated(&self.state)
             + allocated(&self.phase)
+            + self.domains.bytes()
     }
 
     /// Checks lengths and values.
@@ -179,7 +190,9 @@ impl<T: Scalar, const D: usize, S: Copy + Default, P: Copy + Default> Particles<
         ];
         let lengths = lengths.map(|(name, found)| (name, found, count));
         let states = ("state", self.state.len(), count * numbers_each);
-        let mut lengths = lengths.into_iter().chain([states]);
+        let domains = self.domains.lengths().filter(|&(_, found)| found > 0);
+        let domains = domains.map(|(name, found)| (name, found, count));
+        let mut lengths = lengths.into_iter().chain([states]).chain(domains);
         match lengths.find(|&(_, found, expected)| found != expected) {
             Some((name, found, expected)) => Err(SetupError::Lengths {
                 name,

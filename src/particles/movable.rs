@@ -15,6 +15,9 @@ pub(crate) struct ParticleViews<'a, T, const D: usize, S, P> {
     pub(super) state: &'a mut [S],
     pub(super) numbers_each: usize,
     pub(super) phase: &'a mut [P],
+    /// Of domains, where there are any.
+    pub(super) half_lengths: &'a [SVector<T, D>],
+    pub(super) half_edges: &'a mut [SMatrix<T, D, D>],
 }
 
 /// What deforms of particles.
@@ -30,6 +33,9 @@ pub(crate) struct Places<'a, T, const D: usize> {
     pub(crate) positions: &'a mut [SVector<T, D>],
     pub(crate) displacements: &'a mut [SVector<T, D>],
     pub(crate) cells: &'a mut [Cell<D>],
+    /// Of domains, where there are any.
+    pub(crate) half_lengths: &'a [SVector<T, D>],
+    pub(crate) half_edges: &'a mut [SMatrix<T, D, D>],
 }
 
 /// What all of them are made of, so many numbers a state.
@@ -62,6 +68,8 @@ impl<T, const D: usize, S, P> ParticleViews<'_, T, D, S, P> {
             positions: self.position,
             displacements: self.displacement,
             cells,
+            half_lengths: self.half_lengths,
+            half_edges: self.half_edges,
         };
         let all = Material {
             stress: self.stress,
@@ -74,7 +82,7 @@ impl<T, const D: usize, S, P> ParticleViews<'_, T, D, S, P> {
     }
 }
 
-impl<T: Send, const D: usize, S: Send, P: Send> Sliced for ParticleViews<'_, T, D, S, P> {
+impl<T: Send + Sync, const D: usize, S: Send, P: Send> Sliced for ParticleViews<'_, T, D, S, P> {
     fn items(&self) -> usize {
         self.position.len()
     }
@@ -87,6 +95,10 @@ impl<T: Send, const D: usize, S: Send, P: Send> Sliced for ParticleViews<'_, T, 
         let (volume, later_volume) = self.volume.split_at_mut(middle);
         let (state, later_state) = self.state.split_at_mut(middle * self.numbers_each);
         let (phase, later_phase) = self.phase.split_at_mut(middle);
+        let of_domains = middle.min(self.half_lengths.len());
+        let (half_lengths, later_half_lengths) = self.half_lengths.split_at(of_domains);
+        let of_domains = middle.min(self.half_edges.len());
+        let (half_edges, later_half_edges) = self.half_edges.split_at_mut(of_domains);
         let numbers_each = self.numbers_each;
         let first = Self {
             position,
@@ -96,6 +108,8 @@ impl<T: Send, const D: usize, S: Send, P: Send> Sliced for ParticleViews<'_, T, 
             state,
             numbers_each,
             phase,
+            half_lengths,
+            half_edges,
         };
         let rest = Self {
             position: later_position,
@@ -105,6 +119,8 @@ impl<T: Send, const D: usize, S: Send, P: Send> Sliced for ParticleViews<'_, T, 
             state: later_state,
             numbers_each,
             phase: later_phase,
+            half_lengths: later_half_lengths,
+            half_edges: later_half_edges,
         };
         (first, rest)
     }

@@ -163,6 +163,22 @@ pub struct Point<T, const D: usize> {
     /// Whether it moves with the particles. There the basis gives gradients made for that
     /// ([`crate::basis::BasisFamily::for_each`]), elsewhere those for points that stand still.
     pub moves: bool,
+    /// The particle that it is, if it is one: a basis that asks for domains ([`crate::basis::Domain`]) then
+    /// has its domain; any other point has none.
+    pub particle: Option<usize>,
+}
+
+impl<T: Copy, const D: usize> Point<T, D> {
+    /// A particle.
+    #[inline(always)]
+    pub fn of_particle(cloud: &Cloud<'_, T, D>, p: usize) -> Self {
+        Self {
+            cell: *cloud.bins.cell_of(p),
+            position: cloud.positions[p],
+            moves: true,
+            particle: Some(p),
+        }
+    }
 }
 
 impl<T, const D: usize> Point<T, D> {
@@ -173,6 +189,7 @@ impl<T, const D: usize> Point<T, D> {
             cell,
             position,
             moves: false,
+            particle: None,
         }
     }
 }

@@ -31,13 +31,8 @@ impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
         value: impl Fn(usize) -> Q,
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        for (p, position) in cloud.positions.iter().enumerate() {
-            let point = Point {
-                cell: *cloud.bins.cell_of(p),
-                position: *position,
-                moves: true,
-            };
-            sink(&point, value(p).scaled(cloud.volumes[p]));
+        for p in 0..cloud.positions.len() {
+            sink(&Point::of_particle(cloud, p), value(p).scaled(cloud.volumes[p]));
         }
     }
 
@@ -48,13 +43,8 @@ impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
         amount: impl Fn(usize) -> Q,
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        for (p, position) in cloud.positions.iter().enumerate() {
-            let point = Point {
-                cell: *cloud.bins.cell_of(p),
-                position: *position,
-                moves: true,
-            };
-            sink(&point, amount(p));
+        for p in 0..cloud.positions.len() {
+            sink(&Point::of_particle(cloud, p), amount(p));
         }
     }
 }

@@ -142,6 +142,7 @@ impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {
                     cell,
                     position,
                     moves: true,
+                    particle: None,
                 };
                 sink(&point, weighted);
                 if !advance(&mut k, self.per_axis) {

@@ -38,11 +38,11 @@ where
         }
         let (basis, grid, force) = (&self.basis, &self.grid, &mut self.dofs.force);
         let load = &mut self.balance.load;
-        let particles = self.particles.mass.iter().zip(&self.particles.position);
-        for (place, ((&mass, x), cell)) in particles.zip(self.bins.cells()).enumerate() {
+        let sites = self.particles.sites(self.bins.cells());
+        for (place, &mass) in self.particles.mass.iter().enumerate() {
             let weight = self.body_forces[self.order.number(place)] * mass;
             *load += weight;
-            basis.for_each(grid, cell, x, |i, phi, _| force[i] += weight * phi);
+            sites.for_each(basis, grid, place, |i, phi, _| force[i] += weight * phi);
         }
     }
 
@@ -53,15 +53,15 @@ where
         let (whole, liquid) = (&mut self.dofs.force, &mut self.liquid.force);
         let inverse = T::one() / phase.porosity();
         let bodies = self.particles.mass.iter().zip(&self.particles.volume);
-        let places = self.particles.position.iter().zip(self.bins.cells());
-        for (place, ((&solid_mass, &volume), (x, cell))) in bodies.zip(places).enumerate() {
+        let sites = self.particles.sites(self.bins.cells());
+        for (place, (&solid_mass, &volume)) in bodies.enumerate() {
             let force = self.body_forces[self.order.number(place)];
             let liquid_mass = phase.liquid_mass(volume);
             let (on_whole, on_liquid) = (
                 force * (solid_mass + liquid_mass),
                 force * (liquid_mass * inverse),
             );
-            basis.for_each(grid, cell, x, |i, phi, _| {
+            sites.for_each(basis, grid, place, |i, phi, _| {
                 whole[i] += on_whole * phi;
                 liquid[i] += on_liquid * phi;
             });

@@ -94,23 +94,22 @@ where
         let (span, parallel) = share::<D>(spans, weights.len(), self.spans.lengths[0]);
         let (mut storage, mut sums) = (Vec::new(), vec![T::zero(); 2 * held.len()]);
         let work = (
-            &self.particles.position[..],
-            self.bins.cells(),
+            self.particles.sites(self.bins.cells()),
             weights,
             Windows::new(spans, &mut storage, &mut sums, 2),
         );
-        each_span(parallel, span, work, &|_, (positions, cells, weights, sums)| {
+        each_span(parallel, span, work, &|_, (sites, weights, sums)| {
             let (first, sums) = sums.one();
             let (sums, _) = sums.as_chunks_mut::<2>();
-            for ((x, cell), &weight) in positions.iter().zip(cells).zip(weights) {
+            for (p, &weight) in weights.iter().enumerate() {
                 let mut slopes = T::zero();
-                basis.for_each(grid, cell, x, |i, _, gradient| {
+                sites.for_each(basis, grid, p, |i, _, gradient| {
                     if !held[i] {
                         slopes += length(&gradient);
                     }
                 });
                 slopes *= weight;
-                basis.for_each(grid, cell, x, |i, phi, gradient| {
+                sites.for_each(basis, grid, p, |i, phi, gradient| {
                     let [mass, bound] = &mut sums[i - first];
                     *mass += weight * phi;
                     if !held[i] {
@@ -125,15 +124,16 @@ where
 
     /// Largest mean of the DOFs' ratios at a particle.
     fn largest_mean(&self, ratios: &[[T; 2]]) -> T {
-        let (basis, grid, positions) = (&self.basis, &self.grid, &self.particles.position[..]);
-        let mut largest = vec![T::zero(); positions.len().div_ceil(PARTICLES)];
+        let (basis, grid) = (&self.basis, &self.grid);
+        let mut largest = vec![T::zero(); self.particles.len().div_ceil(PARTICLES)];
         let parallel = largest.len() > 1 && many_threads();
-        let work = (positions, self.bins.cells(), PerSpan(&mut largest[..]));
-        each_span(parallel, PARTICLES, work, &|_, (positions, cells, found)| {
+        let sites = self.particles.sites(self.bins.cells());
+        let work = (sites, PerSpan(&mut largest[..]));
+        each_span(parallel, PARTICLES, work, &|_, (sites, found)| {
             let mut most = T::zero();
-            for (x, cell) in positions.iter().zip(cells) {
+            for p in 0..sites.positions.len() {
                 let mut mean = T::zero();
-                basis.for_each(grid, cell, x, |i, phi, _| mean += phi * ratios[i][1]);
+                sites.for_each(basis, grid, p, |i, phi, _| mean += phi * ratios[i][1]);
                 most = most.max(mean);
             }
             found.set(most);

@@ -239,6 +239,7 @@ where
         let fitted = Fitted {
             basis: &self.basis,
             cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
+            domains: self.particles.domains.views(),
             reconstruction: &mut self.reconstruction,
             spans: &mut self.spans,
             batched,
@@ -258,8 +259,8 @@ where
     fn stress_rate(&self, p: usize, state: &mut Vec<L::Number>) -> SMatrix<T, D, D> {
         let particles = &self.particles;
         let mut gradient = SMatrix::<T, D, D>::zeros();
-        let (cell, x) = (self.bins.cell_of(p), &particles.position[p]);
-        self.basis.for_each(&self.grid, cell, x, |i, _, grad_phi| {
+        let sites = particles.sites(self.bins.cells());
+        sites.for_each(&self.basis, &self.grid, p, |i, _, grad_phi| {
             gradient += self.dofs.velocity[i] * grad_phi.transpose();
         });
         if P::FLOWS {

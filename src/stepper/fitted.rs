@@ -13,7 +13,7 @@ use crate::basis::BasisFamily;
 use crate::field::{Field, MassMomentum, Pair, Symmetric};
 use crate::mass::banded_row;
 use crate::parallel::{Groups, PerSpan, Windows, add_up, each_span};
-use crate::particles::Particles;
+use crate::particles::{DomainViews, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Values};
 use crate::scalar::Scalar;
@@ -25,6 +25,8 @@ pub(super) struct Fitted<'a, 'c, T: Scalar, const D: usize, B, R> {
     pub(super) basis: &'a B,
     pub(super) reconstruction: &'a mut R,
     pub(super) cloud: Cloud<'c, T, D>,
+    /// Of the particles, where the basis asks for them.
+    pub(super) domains: DomainViews<'c, T, D>,
     pub(super) spans: &'a mut Spans<T, D>,
     /// Whether four cells are fitted at a time.
     pub(super) batched: bool,
@@ -63,11 +65,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
     ) where
         I: Integrand<T, D, S, C, G, 0>,
     {
-        let (basis, cloud) = (self.basis, &self.cloud);
+        let (basis, cloud, domains) = (self.basis, &self.cloud, self.domains);
         let amount = |p: usize| amount_of(value.at(p), I::CONSERVED, cloud.volumes[p]);
         if !R::CELLWISE {
             let mut sums = InSpan::whole(targets);
-            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, |dof, sum| sums.add(dof, sum));
+            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, |dof, sum| sums.add(dof, sum));
             return match I::CONSERVED {
                 true => self.reconstruction.integrate_conserved(cloud, amount, sink),
                 false => self.reconstruction.integrate(cloud, amount, sink),
@@ -102,6 +104,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             if const { transfer::fit::<T, D, B, R>() } && batched {
                 let fits = Fits {
                     moving: basis,
+                    domains: self.domains,
                     reconstruction,
                     cloud,
                     cells,
@@ -118,7 +121,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                     ));
                 return reduced.set(found);
             }
-            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, |dof, sum| sums.add(dof, sum));
+            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, |dof, sum| sums.add(dof, sum));
             match I::CONSERVED {
                 true => reconstruction.integrate_conserved_cells(cloud, cells, amount, sink),
                 false => reconstruction.integrate_cells(cloud, cells, amount, sink),
@@ -218,6 +221,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             if const { transfer::fit::<T, D, B, R>() } && batched {
                 let fits = Fits {
                     moving: basis,
+                    domains: self.domains,
                     reconstruction,
                     cloud,
                     cells,
@@ -277,6 +281,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         if const { transfer::fit::<T, D, B, R>() } && self.batched {
             let fits = Fits {
                 moving: basis,
+                domains: self.domains,
                 reconstruction: &*self.reconstruction,
                 cloud,
                 cells: 0..cloud.bins.occupied().len(),
@@ -331,6 +336,7 @@ fn add_to_row<T: Scalar>(rows: &mut [T], i: usize, j: usize, half_band: usize, m
 fn stream<'a, I, T, const D: usize, B, const S: usize, const C: usize, const G: usize>(
     basis: &'a B,
     cloud: &'a Cloud<'_, T, D>,
+    domains: DomainViews<'a, T, D>,
     mut sink: impl FnMut(usize, Sum<T, D, S, C, G>) + 'a,
 ) -> impl FnMut(&Point<T, D>, I::Field) + 'a
 where
@@ -341,10 +347,11 @@ where
     move |point, value| {
         let parts = I::parts(&transfer::components_of::<T, I::Field>(&value), &[T::one(); D]);
         let add = |dof: usize, phi: T, gradient: SVector<T, D>| sink(dof, Sum::of(&parts, phi, &gradient));
-        if point.moves {
-            basis.for_each(cloud.grid, &point.cell, &point.position, add);
-        } else {
-            basis.for_each_at_fixed_point(cloud.grid, &point.cell, &point.position, add);
+        let (grid, cell, x) = (cloud.grid, &point.cell, &point.position);
+        match (point.moves, point.particle) {
+            (true, Some(p)) => domains.for_each((basis, grid), p, (cell, x), add),
+            (true, None) => basis.for_each(grid, cell, x, add),
+            (false, _) => basis.for_each_at_fixed_point(grid, cell, x, add),
         }
     }
 }

@@ -1,14 +1,13 @@
 //! The particles' consistent mass matrix, and tractions.
 
-use nalgebra::SVector;
-
 use super::ghost::lump_undetermined_cells;
 use super::matrix::MassMatrix;
 use super::pairs::Pairs;
 use super::{FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
-use crate::grid::{Cell, Grid};
+use crate::grid::Grid;
 use crate::law::LawSweep;
+use crate::particles::Sites;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -40,7 +39,7 @@ where
     }
 
     pub(super) fn assemble_particle_matrix(&mut self) {
-        let bodies = (&self.particles.position[..], self.bins.cells());
+        let bodies = self.particles.sites(self.bins.cells());
         let (masses, matrix) = (&self.particles.mass[..], &mut self.dofs.matrix);
         fill_with_pairs(&self.basis, &self.grid, bodies, masses, &mut self.pairs, matrix);
         if D > 1 {
@@ -61,13 +60,12 @@ where
             if !point.loaded {
                 continue;
             }
-            let x = self.surface_position(point);
-            let cell = self.bins.cell_of(point.particle);
+            let (cell, x) = self.loaded_place(point);
             let load = traction * point.area;
             self.balance.load += load;
             let force = &mut self.dofs.force;
             self.basis
-                .for_each(&self.grid, cell, &x, |i, phi, _| force[i] += load * phi);
+                .for_each(&self.grid, &cell, &x, |i, phi, _| force[i] += load * phi);
         }
     }
 }
@@ -77,7 +75,7 @@ where
 pub(super) fn fill_with_pairs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
-    (positions, cells): (&[SVector<T, D>], &[Cell<D>]),
+    sites: Sites<'_, T, D>,
     masses: &[T],
     pairs: &mut Pairs<T, D>,
     matrix: &mut MassMatrix<T, D>,
@@ -85,13 +83,14 @@ pub(super) fn fill_with_pairs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     matrix.clear();
     for_values!(B, basis, |basis| {
         if sums_apply(basis, grid) {
-            return sum_pairs(basis, grid, (positions, cells), masses, &mut |i, j, mass| {
+            return sum_pairs(basis, grid, sites, masses, &mut |i, j, mass| {
                 matrix.add(i, j, mass);
             });
         }
-        for ((x, &mass), cell) in positions.iter().zip(masses).zip(cells) {
-            pairs.turn_to(cell, matrix);
-            basis.for_each(grid, cell, x, |i, phi, _| pairs.see(i, phi));
+        for (p, (place, &mass)) in sites.cells.iter().zip(sites.positions).zip(masses).enumerate() {
+            pairs.turn_to(place.0, matrix);
+            let see = |i, phi, _| pairs.see(i, phi);
+            sites.domains.for_each((basis, grid), p, place, see);
             pairs.add(mass);
         }
         pairs.flush(matrix);

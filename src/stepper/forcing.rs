@@ -184,7 +184,9 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
 /// A particle at a body's surface: it passes tractions and pore pressures on and moves with the material.
 ///
 /// The surface lies `reach` of the particle's current length `volume / area` beyond its position, but within
-/// the particle's cell: beyond it no mass would feel a load. In one dimension it also cuts the cell that a
+/// the particle's cell: beyond it no mass would feel a load. Where the basis asks for domains
+/// ([`Domain`](crate::basis::Domain)) the particle's length is that of its domain, which mass of the next cell
+/// feels too, so loads act where that ends. In one dimension it also cuts the cell that a
 /// fit covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint<T> {
@@ -253,6 +255,17 @@ impl<T: Scalar> SurfacePoint<T> {
             Side::Min => (x[axis] - reach).max(edge(cell[axis])),
             Side::Max => (x[axis] + reach).min(edge(cell[axis] + 1)),
         };
+        x
+    }
+
+    /// The end of a domain that reaches so far to each side, in whatever cell.
+    pub(super) fn end_of_domain<const D: usize>(
+        &self,
+        position: &SVector<T, D>,
+        half_length: T,
+    ) -> SVector<T, D> {
+        let mut x = *position;
+        x[self.face.axis] += self.outward() * self.reach * (half_length + half_length);
         x
     }
 

@@ -19,6 +19,7 @@ use crate::error::{SetupError, StepError};
 use crate::grid::{Face, Grid};
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
+use crate::particles::Sites;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -82,7 +83,7 @@ where
         let (span, parallel) = share::<D>(windows, particles.len(), lengths[0]);
         let (basis, grid, transfer, places) = (&self.basis, &self.grid, &self.transfer, &self.places);
         let work = (
-            (&particles.position[..], self.bins.cells()),
+            particles.sites(self.bins.cells()),
             (&particles.mass[..], &particles.velocity[..], &self.memory[..]),
             store.windows(windows, &mut momenta),
         );
@@ -117,7 +118,11 @@ where
         let (basis, grid, transfer, places) = (&self.basis, &self.grid, &self.transfer, &self.places);
         let fields = [&self.dofs.velocity[..], &self.dofs.force[..]];
         let work = (
-            (&particles.position[..], self.bins.cells()),
+            Sites {
+                positions: &particles.position,
+                cells: self.bins.cells(),
+                domains: particles.domains.views(),
+            },
             (
                 &particles.mass[..],
                 &mut particles.velocity[..],

@@ -7,7 +7,7 @@ use super::sums::{InSpan, Targets, liquid_velocities};
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
 use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
-use crate::particles::{Bins, Particles};
+use crate::particles::{Bins, Particles, Sites};
 use crate::phase::Phase;
 use crate::scalar::Scalar;
 use crate::simd::{Number, Packs, each};
@@ -125,7 +125,11 @@ where
     };
     totals.fill(Totals::zero());
     let work = (
-        (&particles.position[..], bins.cells()),
+        Sites {
+            positions: &particles.position,
+            cells: bins.cells(),
+            domains: particles.domains.views(),
+        },
         (&particles.mass[..], &particles.volume[..]),
         (&mut particles.velocity[..], &mut particles.phase[..]),
         store.windows(windows, &mut momenta),

@@ -31,6 +31,7 @@ mod contact;
 mod critical;
 mod diagnostics;
 mod dofs;
+mod domain;
 mod drift;
 mod faces;
 mod fitted;
@@ -64,9 +65,9 @@ pub use simulation::Simulation;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::basis::BasisFamily;
+use crate::basis::{BasisFamily, FixedPoints};
 use crate::error::{SetupError, StepError};
-use crate::grid::Grid;
+use crate::grid::{Cell, Grid};
 use crate::law::LawSweep;
 use crate::mass::VelocityMass;
 use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
@@ -152,7 +153,7 @@ where
     ///
     /// # Errors
     /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside
-    /// the grid, a constant of the phase makes no sense, or beyond one axis the reconstruction is of one
+    /// the grid or larger than the basis allows ([`Domain`](crate::basis::Domain)), a constant of the phase makes no sense, or beyond one axis the reconstruction is of one
     /// phase only or wants a basis that is one polynomial of its degree in each cell
     /// ([`Reconstruction::PARTICLE_MATRIX`]).
     pub fn new(setup: Setup<T, D, B, R, L, P, X>) -> Result<Self, SetupError> {
@@ -177,6 +178,8 @@ where
         particles.validate_with(law.numbers())?;
         phase.validate()?;
         refuse_unknown_stress(&law, &particles)?;
+        domain::lay::<T, D, B, _, _>(&grid, &mut particles);
+        domain::validate::<T, D, B, _, _>(&grid, &particles, |p| p)?;
         if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {
             return Err(SetupError::OnePhaseOnly);
         }
@@ -422,7 +425,16 @@ where
     /// Whether fits are made and integrated for four cells at a time, so that nothing of them need be kept.
     fn batched(&self) -> bool {
         let can = const { transfer::fit::<T, D, B, R>() };
-        can && packs_serve::<T>() && (1..=transfer::MOST_POINTS).contains(&self.reconstruction.line().count())
+        can && self.is_wide_enough()
+            && packs_serve::<T>()
+            && (1..=transfer::MOST_POINTS).contains(&self.reconstruction.line().count())
+    }
+
+    /// Whether the functions that fits are integrated with all are of DOFs that there are: a stencil may be
+    /// wider than the grid.
+    fn is_wide_enough(&self) -> bool {
+        let linear = const { matches!(B::AT_FIXED_POINTS, FixedPoints::Linear) };
+        linear || self.basis.dofs(&self.grid).iter().all(|&count| count >= B::WIDTH)
     }
 
     /// Puts the particles in the order of their cells.
@@ -467,6 +479,23 @@ where
         let p = point.particle;
         let (x, volume) = (&self.particles.position[p], self.particles.volume[p]);
         point.position(&self.grid, self.bins.cell_of(p), x, volume)
+    }
+
+    /// Where loads of a surface act, with the cell.
+    fn loaded_place(&self, point: &SurfacePoint<T>) -> (Cell<D>, SVector<T, D>) {
+        let p = point.particle;
+        let extent = self.particles.domains.half_extent(p, point.face.axis);
+        if const { B::DOMAIN.is_asked_for() }
+            && let Some(half_length) = extent
+        {
+            let x = point.end_of_domain(&self.particles.position[p], half_length);
+            if let Some(cell) = self.grid.locate(&x)
+                && self.grid.has_numbers(&cell, 0)
+            {
+                return (cell, x);
+            }
+        }
+        (*self.bins.cell_of(p), self.surface_position(point))
     }
 
     fn left(&self, particle: usize) -> StepError {

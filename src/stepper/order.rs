@@ -163,6 +163,7 @@ impl<T: Scalar, const D: usize, S: Copy, P: Copy> Particles<T, D, S, P> {
             self.state.swap(a * numbers_each + k, b * numbers_each + k);
         }
         self.phase.swap(a, b);
+        self.domains.swap(a, b);
     }
 
     /// Puts particles with the given `numbers` and a state each in the order of the numbers, which are used

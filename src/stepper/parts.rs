@@ -1,7 +1,7 @@
 //! The parts of a stepper, handed out between steps and back at the end.
 
 use super::order::permute;
-use super::{Setup, Stepper, refuse_unknown_stress, values};
+use super::{Setup, Stepper, domain, refuse_unknown_stress, values};
 use crate::basis::BasisFamily;
 use crate::error::SetupError;
 use crate::grid::Window;
@@ -76,6 +76,7 @@ where
         }
         self.particles.validate_with(self.law.numbers())?;
         refuse_unknown_stress(&self.law, &self.particles)?;
+        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, |place| self.order.number(place))?;
         let positions = &self.particles.position;
         self.bins =
             Bins::without_lists(&self.grid, positions).map_err(|Outside(place)| SetupError::Outside {

@@ -17,12 +17,19 @@ const OF_COORDINATES: f64 = 64.0;
 
 /// Refuses a basis that is not one polynomial of its degree along each axis of each cell: ties between cells
 /// continue that polynomial ([`crate::mass::Penalty`]), and continue something else where functions bend
-/// within a cell.
+/// within a cell. Functions over domains always do.
 pub(super) fn refuse_bends_within_cells<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
 ) -> Result<(), SetupError> {
     for axis in 0..D {
+        if B::DOMAIN.is_asked_for() {
+            return Err(SetupError::NotPolynomial {
+                axis,
+                cell: 0,
+                degree: basis.degree(),
+            });
+        }
         let bend = grid.line(axis).find(|cell| bends_in(basis, grid, cell, axis));
         if let Some(cell) = bend {
             return Err(SetupError::NotPolynomial {

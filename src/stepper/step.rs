@@ -173,6 +173,7 @@ where
         let fitted = Fitted {
             basis: &self.basis,
             cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
+            domains: self.particles.domains.views(),
             reconstruction: &mut self.reconstruction,
             spans: &mut self.spans,
             batched,
@@ -307,6 +308,7 @@ where
         let fitted = Fitted {
             basis: &self.basis,
             cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
+            domains: self.particles.domains.views(),
             reconstruction: &mut self.reconstruction,
             spans: &mut self.spans,
             batched,

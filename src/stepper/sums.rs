@@ -400,7 +400,7 @@ pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C:
     } = spans;
     let (span, parallel) = share::<D>(spans, particles.position.len(), lengths[0]);
     let work = (
-        (&particles.position[..], bins.cells()),
+        particles.sites(bins.cells()),
         (&particles.mass[..], &particles.volume[..]),
         (&particles.velocity[..], &particles.stress[..]),
         (&particles.phase[..], Maybe(liquid_masses)),

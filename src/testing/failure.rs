@@ -112,6 +112,8 @@ pub enum Property {
     Factors,
     /// `AT_FIXED_POINTS` says what `for_each_at_fixed_point` visits.
     FixedPointsAsSaid,
+    /// Over a domain that has vanished a particle is a point.
+    VanishingDomain,
     /// A gradient that is said to be constant in a cell is.
     ConstantGradient,
     /// `integrate_cells` and `integrate_conserved_cells` stream what all cells together do.
@@ -203,6 +205,7 @@ impl fmt::Display for Property {
             Self::Stable => "stress does not fall while strain grows",
             Self::Factors => "`factors` gives the values and gradients of `for_each`",
             Self::FixedPointsAsSaid => "AT_FIXED_POINTS says what points that stand still see",
+            Self::VanishingDomain => "over a domain that vanishes a particle is a point",
             Self::ConstantGradient => "a gradient said to be constant in a cell is",
             Self::CellsStreamTheSame => "cells streamed alone stream what all together do",
             Self::FourStreamTheSame => "four cells at once stream what one after another does",

@@ -11,18 +11,22 @@ use super::places::DofPlaces;
 use super::sums::Sum;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
+use crate::particles::DomainViews;
 use crate::scalar::Scalar;
 
 /// DOFs that are kept at hand, enough for the cubic B-splines of a cell in three dimensions; any more are
 /// added directly.
 const AT_HAND: usize = 64;
 
+/// A cell, and a point of it.
+type Place<'a, T, const D: usize> = (&'a Cell<D>, &'a SVector<T, D>);
+
 /// Sums of the DOFs of a cell, in the order in which the basis visits them: the same one for every point of
 /// the cell.
 pub(super) struct StencilSums<'a, T, const D: usize, B, const S: usize, const C: usize, const G: usize> {
     basis: &'a B,
     grid: &'a Grid<T, D>,
-    cell: Option<(&'a Cell<D>, &'a SVector<T, D>)>,
+    cell: Option<Place<'a, T, D>>,
     sums: [Sum<T, D, S, C, G>; AT_HAND],
 }
 
@@ -39,25 +43,26 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, const S: usize, const 
         }
     }
 
-    /// Adds `parts`, tensors by coordinates, at every DOF that `x` in `cell` sees; with `places` tensors go
-    /// with moments. `sink(dof, sum)` takes the
-    /// sums of the cell before.
+    /// Adds `parts`, tensors by coordinates, at every DOF that particle `p` of these domains sees from its
+    /// place; with `places` of the DOFs tensors go with moments. `sink(dof, sum)` takes the sums of the cell
+    /// before.
     #[inline(always)]
     pub(super) fn add(
         &mut self,
-        cell: &'a Cell<D>,
-        x: &'a SVector<T, D>,
+        (p, place): (usize, Place<'a, T, D>),
+        domains: &DomainViews<'_, T, D>,
         parts: &Parts<T, D, S, C, G>,
         places: Option<&DofPlaces<T, D>>,
         sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
     ) {
-        if self.cell.is_none_or(|(last, _)| last != cell) {
+        if self.cell.is_none_or(|(last, _)| last != place.0) {
             self.flush(sink);
-            self.cell = Some((cell, x));
+            self.cell = Some(place);
         }
         let mut k = 0;
         let sums = &mut self.sums;
-        self.basis.for_each(self.grid, cell, x, |dof, phi, mut gradient| {
+        let x = place.1;
+        domains.for_each((self.basis, self.grid), p, place, |dof, phi, mut gradient| {
             if let Some(places) = places {
                 gradient = places.offset(dof, x) * phi;
             }

@@ -10,9 +10,9 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Sweep;
 use super::group::{Group, come_in_eights};
-use crate::basis::BasisFamily;
+use crate::basis::{BasisFamily, Domain};
 use crate::grid::{Cell, Grid};
-use crate::particles::{Places, settle};
+use crate::particles::{DomainViews, Places, settle};
 use crate::scalar::Scalar;
 use crate::simd::{MOST_LANES, Packs, dispatch_for, each, inlined};
 
@@ -145,11 +145,24 @@ pub(crate) fn drift<T: Scalar, const D: usize, B: BasisFamily<T, D>, const C: us
         } else {
             fill_by_points(basis, grid, motion, p, &mut block, &mut places, &mut outcome);
         }
+        if const { matches!(B::DOMAIN, Domain::Edges) } {
+            carry_edges(&block.increments[0][..block.count], &mut places.half_edges[p..]);
+        }
         let increments = each(|q| &block.increments[q][..block.count]);
         sound = deform(p, increments);
         p += block.count;
     }
     outcome
+}
+
+/// Lets edge vectors follow the displacement gradients of the step: `e = (1 + dt grad v) e`.
+fn carry_edges<T: Scalar, const D: usize>(
+    increments: &[SMatrix<T, D, D>],
+    half_edges: &mut [SMatrix<T, D, D>],
+) {
+    for (edges, increment) in half_edges.iter_mut().zip(increments) {
+        *edges += increment * *edges;
+    }
 }
 
 /// Moves particles from index `p` on until the block is full.
@@ -168,6 +181,8 @@ fn fill<T: Scalar, const D: usize, B: BasisFamily<T, D>, K: Packs<T, N>, const N
         positions: &mut places.positions[..count],
         displacements: &mut places.displacements[..count],
         cells: &mut *places.cells,
+        half_lengths: places.half_lengths,
+        half_edges: &mut *places.half_edges,
     };
     let (start, mut p) = (p, p);
     let has_room = inlined(
@@ -185,6 +200,7 @@ fn fill<T: Scalar, const D: usize, B: BasisFamily<T, D>, K: Packs<T, N>, const N
                     &motion,
                     group,
                     (places.positions, places.displacements, places.cells),
+                    places.half_lengths,
                     outcome,
                 );
                 block.note(k, &increments, p - start);
@@ -201,6 +217,7 @@ fn fill<T: Scalar, const D: usize, B: BasisFamily<T, D>, K: Packs<T, N>, const N
             &motion,
             group,
             (places.positions, places.displacements, places.cells),
+            places.half_lengths,
             outcome,
         );
         block.note(k, &increments, p - start);
@@ -220,11 +237,12 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         motion: &Drift<'_, T, D, C>,
         group: Group<N>,
         (positions, displacements, cells): (&mut [SVector<T, D>], &mut [SVector<T, D>], &mut [Cell<D>]),
+        half_lengths: &[SVector<T, D>],
         outcome: &mut Outcome,
     ) -> [[[K::V; D]; D]; C] {
         let cell = &cells[group.first];
         let x = group.vectors::<FULL, T, K, D>(k, positions);
-        let factors = self.factors(k, cell, &x);
+        let factors = self.factors::<FULL, K, N>(k, group, (cell, &x), half_lengths);
         let first = self.first_dof(cell);
         let (dt, inverse) = (k.splat(motion.dt), self.grid.inverse_cell_size());
         let steps: [K::V; D] = each(
@@ -301,7 +319,11 @@ fn fill_by_points<T: Scalar, const D: usize, B: BasisFamily<T, D>, const C: usiz
         let (x, cell) = (&mut places.positions[p], &mut places.cells[p]);
         let mut v = SVector::zeros();
         let mut gradients = [SMatrix::<T, D, D>::zeros(); C];
-        basis.for_each(grid, cell, x, |i, phi, grad_phi| {
+        let domains = DomainViews {
+            half_lengths: places.half_lengths,
+            half_edges: places.half_edges,
+        };
+        domains.for_each((basis, grid), p, (&*cell, &*x), |i, phi, grad_phi| {
             v += velocities[0][i] * phi;
             for q in 0..C {
                 gradients[q] += velocities[q][i] * grad_phi.transpose();

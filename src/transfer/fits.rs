@@ -12,6 +12,7 @@ use super::sums::{Parts, Sum, Sums};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::field::{Field, MassMomentum, Pair, Symmetric, symmetric_component};
 use crate::grid::Cell;
+use crate::particles::DomainViews;
 use crate::reconstruction::{Cloud, Kept, Point, Reconstruction, Values, batch_of_cells};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Number, Packs, dispatch_vectors, each, in_lanes, inlined};
@@ -128,8 +129,9 @@ impl<V: Copy, const D: usize> AtPoints<V, D> {
 
 /// What is to be integrated where.
 pub(crate) struct Fits<'a, 'c, T, const D: usize, M, R> {
-    /// The functions at points that move.
+    /// The functions at points that move, and the domains of those that are particles.
     pub(crate) moving: &'a M,
+    pub(crate) domains: DomainViews<'a, T, D>,
     pub(crate) reconstruction: &'a R,
     pub(crate) cloud: &'a Cloud<'c, T, D>,
     /// Places in the list of occupied cells.
@@ -139,6 +141,14 @@ pub(crate) struct Fits<'a, 'c, T, const D: usize, M, R> {
 }
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
+    /// Whether cells that ascend along one axis follow each other, and so do their DOFs: those of cells at
+    /// the ends need not.
+    #[inline(always)]
+    fn follow(&self, cells: &[Cell<D>; LANES]) -> bool {
+        cells[LANES - 1][0] - cells[0][0] == LANES as u32 - 1
+            && self.first_dof(&cells[LANES - 1]) - self.first_dof(&cells[0]) == LANES - 1
+    }
+
     /// Cells of one kind have the same functions.
     #[inline(always)]
     fn kind(&self, cell: &Cell<D>) -> [usize; D] {
@@ -232,7 +242,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 },
             );
             reduced += outcome.reduced;
-            if const { D == 1 } && places.len() == LANES && follow(&four) && outcome.hard == [false; LANES] {
+            if const { D == 1 }
+                && places.len() == LANES
+                && self.follow(&four)
+                && outcome.hard == [false; LANES]
+            {
                 sums.scatter_line(k, self, &four[0], sink);
                 for q in 0..W {
                     pairs[q].scatter_line(k, self, &four[0], &mut |i, j, mass| matrix(q, i, j, mass));
@@ -294,9 +308,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 let parts = I::parts(&value, &[T::one(); D]);
                 let (cell, x) = (&point.cell, &point.position);
                 if point.moves {
-                    return fits.moving.for_each(grid, cell, x, |i, phi, gradient| {
-                        sink(i, Sum::of(&parts, phi, &gradient))
-                    });
+                    let add = |i: usize, phi, gradient| sink(i, Sum::of(&parts, phi, &gradient));
+                    return match point.particle {
+                        Some(p) => fits.domains.for_each((fits.moving, grid), p, (cell, x), add),
+                        None => fits.moving.for_each(grid, cell, x, add),
+                    };
                 }
                 let masses = I::masses(&value);
                 basis.for_each(grid, cell, x, |i, phi, gradient| {
@@ -482,12 +498,6 @@ fn vector<T, V: Number<T>, const D: usize>(value: &[V; MOST_COMPONENTS], first: 
         #[inline(always)]
         |c| value[first + c],
     )
-}
-
-/// Whether cells that ascend along one axis follow each other.
-#[inline(always)]
-fn follow<const D: usize>(cells: &[Cell<D>; LANES]) -> bool {
-    cells[LANES - 1][0] - cells[0][0] == LANES as u32 - 1
 }
 
 /// Number and coordinates from 0 to 1 of points given by theirs from -1 to 1.

@@ -9,6 +9,7 @@ use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::places::DofPlaces;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
+use crate::particles::Sites;
 use crate::scalar::Scalar;
 use crate::simd::{One, Packs, dispatch_for, each};
 
@@ -42,20 +43,20 @@ pub(crate) trait Receive<T: Scalar, const D: usize>: Sized {
 pub(crate) fn gather<T: Scalar, const D: usize, B: BasisFamily<T, D>, W: Receive<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
-    (positions, cells): (&[SVector<T, D>], &[Cell<D>]),
+    sites: Sites<'_, T, D>,
     fields: [&[SVector<T, D>]; 2],
     places: &DofPlaces<T, D>,
     what: W,
 ) -> W {
     let sweep = Sweep::new(basis, grid);
     if sweep.is_in_packs() {
-        return dispatch_for!(T, come_in_eights(cells), |k| in_packs(
-            k, &sweep, positions, cells, fields, places, what
+        return dispatch_for!(T, come_in_eights(sites.cells), |k| in_packs(
+            k, &sweep, sites, fields, places, what
         ));
     }
     let mut what = what;
-    for (p, (x, cell)) in positions.iter().zip(cells).enumerate() {
-        let seen = seen_from(basis, grid, (cell, x), fields, places);
+    for p in 0..sites.positions.len() {
+        let seen = seen_from(basis, grid, (sites, p), fields, places);
         what.take::<One, 1, true>(One, Group { first: p, count: 1 }, &seen);
     }
     what
@@ -65,12 +66,13 @@ pub(crate) fn gather<T: Scalar, const D: usize, B: BasisFamily<T, D>, W: Receive
 fn seen_from<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
-    (cell, x): (&Cell<D>, &SVector<T, D>),
+    (sites, p): (Sites<'_, T, D>, usize),
     [velocities, accelerations]: [&[SVector<T, D>]; 2],
     places: &DofPlaces<T, D>,
 ) -> Seen<T, D> {
+    let x = &sites.positions[p];
     let mut seen = GridVelocity::none(T::zero(), SVector::zeros());
-    basis.for_each(grid, cell, x, |i, phi, gradient| {
+    sites.for_each(basis, grid, p, |i, phi, gradient| {
         let offset = places.offset(i, x);
         seen.see(phi, &gradient, &offset, (&velocities[i], &accelerations[i]));
     });
@@ -98,16 +100,17 @@ fn in_packs<
 >(
     k: K,
     sweep: &Sweep<'_, T, D, B>,
-    positions: &[SVector<T, D>],
-    cells: &[Cell<D>],
+    sites: Sites<'_, T, D>,
     fields: [&[SVector<T, D>]; 2],
     places: &DofPlaces<T, D>,
     what: W,
 ) -> W {
+    let cells = sites.cells;
     let mut groups = Gathering {
         k,
         sweep,
-        positions: &positions[..cells.len()],
+        positions: &sites.positions[..cells.len()],
+        half_lengths: sites.domains.half_lengths,
         cells,
         fields,
         places,
@@ -122,6 +125,7 @@ struct Gathering<'a, T, K, const D: usize, B, W> {
     k: K,
     sweep: &'a Sweep<'a, T, D, B>,
     positions: &'a [SVector<T, D>],
+    half_lengths: &'a [SVector<T, D>],
     cells: &'a [Cell<D>],
     fields: [&'a [SVector<T, D>]; 2],
     places: &'a DofPlaces<T, D>,
@@ -140,7 +144,7 @@ where
         let (k, sweep, [velocities, accelerations]) = (self.k, self.sweep, self.fields);
         let cell = &self.cells[group.first];
         let x = group.vectors::<FULL, T, K, D>(k, self.positions);
-        let factors = sweep.factors(k, cell, &x);
+        let factors = sweep.factors::<FULL, K, N>(k, group, (cell, &x), self.half_lengths);
         let moments = sweep.moments(k, cell, &x, &factors, self.places);
         let first = sweep.first_dof(cell);
         let (velocity, slopes) = sweep.value_and_slopes(k, first, &factors, velocities);

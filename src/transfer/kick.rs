@@ -10,6 +10,7 @@ use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::sums::{Parts, Sum, Sums};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
+use crate::particles::Sites;
 use crate::scalar::Scalar;
 use crate::simd::{Number, One, Packs, dispatch_for, each};
 
@@ -64,22 +65,31 @@ pub(crate) fn kick<
 >(
     basis: &B,
     grid: &Grid<T, D>,
-    (positions, cells): (&[SVector<T, D>], &[Cell<D>]),
+    sites: Sites<'_, T, D>,
     fields: [&[SVector<T, D>]; C],
     mut what: W,
     mut sink: impl FnMut(usize, Sum<T, D, 0, M, 0>),
 ) -> ([Momentum<T, D>; C], W) {
     let sweep = Sweep::new(basis, grid);
     if sweep.is_in_packs() {
-        return dispatch_for!(T, come_in_eights(cells), |k| in_packs::<M, _, D, _, _, _, _, C>(
-            k, &sweep, positions, cells, fields, what, sink
+        return dispatch_for!(T, come_in_eights(sites.cells), |k| in_packs::<
+            M,
+            _,
+            D,
+            _,
+            _,
+            _,
+            _,
+            C,
+        >(
+            k, &sweep, sites, fields, what, sink
         ));
     }
     let mut totals = [Momentum::zero(); C];
     let mut sums = StencilSums::new(basis, grid);
-    for (p, (x, cell)) in positions.iter().zip(cells).enumerate() {
+    for (p, place) in sites.cells.iter().zip(sites.positions).enumerate() {
         let mut a = [[T::zero(); D]; C];
-        basis.for_each(grid, cell, x, |i, phi, _| {
+        sites.domains.for_each((basis, grid), p, place, |i, phi, _| {
             for q in 0..C {
                 for c in 0..D {
                     a[q][c] += fields[q][i][c] * phi;
@@ -92,7 +102,7 @@ pub(crate) fn kick<
             totals[q].scale += size(&momenta[q]);
         }
         if M > 0 {
-            sums.add(cell, x, &parts(&momenta), None, &mut sink);
+            sums.add((p, place), &sites.domains, &parts(&momenta), None, &mut sink);
         }
     }
     if M > 0 {
@@ -130,17 +140,17 @@ fn in_packs<
 >(
     k: K,
     sweep: &Sweep<'_, T, D, B>,
-    positions: &[SVector<T, D>],
-    cells: &[Cell<D>],
+    sites: Sites<'_, T, D>,
     fields: [&[SVector<T, D>]; C],
     what: W,
     sink: impl FnMut(usize, Sum<T, D, 0, M, 0>),
 ) -> ([Momentum<T, D>; C], W) {
-    let zero = k.splat(T::zero());
+    let (zero, cells) = (k.splat(T::zero()), sites.cells);
     let mut groups = Kicking::<M, _, _, _, D, _, _, _, C> {
         k,
         sweep,
-        positions: &positions[..cells.len()],
+        positions: &sites.positions[..cells.len()],
+        half_lengths: sites.domains.half_lengths,
         cells,
         fields,
         what: what.cut(cells.len()),
@@ -175,6 +185,7 @@ struct Kicking<'a, const M: usize, T, K, V, const D: usize, B, W, F, const C: us
     k: K,
     sweep: &'a Sweep<'a, T, D, B>,
     positions: &'a [SVector<T, D>],
+    half_lengths: &'a [SVector<T, D>],
     cells: &'a [Cell<D>],
     fields: [&'a [SVector<T, D>]; C],
     what: W,
@@ -199,7 +210,7 @@ where
         let (k, sweep) = (self.k, self.sweep);
         let cell = &self.cells[group.first];
         let x = group.vectors::<FULL, T, K, D>(k, self.positions);
-        let factors = sweep.factors(k, cell, &x);
+        let factors = sweep.factors::<FULL, K, N>(k, group, (cell, &x), self.half_lengths);
         let first = sweep.first_dof(cell);
         let a: [[K::V; D]; C] = each(
             #[inline(always)]

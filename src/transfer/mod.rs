@@ -17,7 +17,8 @@
 //! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs,
 //! and then over the rows (`rows`). What a group adds to DOFs stays in lanes while particles of its cell
 //! come, and longer where the next cell is the neighbour along axis 0 (`sums`). A basis that is no product is
-//! asked for its functions point by point, with a single number in the place of a pack.
+//! asked for its functions point by point, with a single number in the place of a pack. Where it averages them
+//! over the domains of particles ([`Domain`](crate::basis::Domain)), it is given these too.
 //!
 //! A group that is not full repeats its last particle without mass and volume. Groups depend on the
 //! particles' order and on where spans begin, not on threads.
@@ -47,11 +48,13 @@ pub(crate) use p2g::{Contribution, Parts, Sum, p2g};
 pub(crate) use pairs::{sum_pairs, sums_apply};
 pub(crate) use places::DofPlaces;
 
-use crate::basis::{BasisFamily, Factors, FixedPoints};
+use nalgebra::SVector;
+
+use crate::basis::{BasisFamily, Domain, Factors, FixedPoints};
 use crate::grid::{Cell, Grid};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::simd::{Lanes, each, packs_serve};
+use crate::simd::{Lanes, Packs, each, packs_serve};
 
 /// Whether a basis is a product, so that several points of a cell can be computed at once.
 pub(crate) const fn in_packs<T: Scalar, const D: usize, B: BasisFamily<T, D>>() -> bool {
@@ -124,9 +127,25 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'a, T, D, B> {
         )
     }
 
+    /// The functions at the particles of a group, which are at `x` and whose domains have these half lengths.
     #[inline(always)]
-    fn factors<K: Lanes<T>>(&self, k: K, cell: &Cell<D>, x: &[K::V; D]) -> Factors<K::V, D> {
-        self.basis.factors(k, self.grid, cell, &self.unit(k, cell, x))
+    fn factors<const FULL: bool, K: Packs<T, N>, const N: usize>(
+        &self,
+        k: K,
+        group: Group<N>,
+        (cell, x): (&Cell<D>, &[K::V; D]),
+        half_lengths: &[SVector<T, D>],
+    ) -> Factors<K::V, D> {
+        let unit = self.unit(k, cell, x);
+        if const { matches!(B::DOMAIN, Domain::Size { .. }) } {
+            let (half, inverse) = (group.vectors::<FULL, T, K, D>(k, half_lengths), self.inverse(k));
+            let half: [K::V; D] = each(
+                #[inline(always)]
+                |a| half[a] * inverse[a],
+            );
+            return self.basis.factors_over(k, self.grid, cell, &unit, &half);
+        }
+        self.basis.factors(k, self.grid, cell, &unit)
     }
 
     /// One over the cell sizes.
@@ -156,10 +175,16 @@ macro_rules! at_fixed_points {
 }
 pub(crate) use at_fixed_points;
 
-/// The same for values alone, at points that move.
+/// The same for values alone, at particles: those over domains are others than at points.
 macro_rules! for_values {
     ($basis:ty, $value:expr, |$fixed:ident| $sweep:expr) => {
-        $crate::transfer::at_fixed_points!($basis, $value, |$fixed| $sweep)
+        if const { <$basis>::DOMAIN.is_asked_for() } {
+            match $value {
+                $fixed => $sweep,
+            }
+        } else {
+            $crate::transfer::at_fixed_points!($basis, $value, |$fixed| $sweep)
+        }
     };
 }
 pub(crate) use for_values;

@@ -10,6 +10,7 @@ use super::sums::Sums;
 pub(crate) use super::sums::{Parts, Sum};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
+use crate::particles::Sites;
 use crate::scalar::Scalar;
 use crate::simd::{One, Packs, dispatch_for};
 
@@ -51,22 +52,22 @@ pub(crate) fn p2g<
 >(
     basis: &B,
     grid: &Grid<T, D>,
-    (positions, cells): (&[SVector<T, D>], &[Cell<D>]),
+    sites: Sites<'_, T, D>,
     what: impl Contribution<T, D, S, C, G>,
     mut sink: impl FnMut(usize, Sum<T, D, S, C, G>),
 ) {
     let sweep = Sweep::new(basis, grid);
     if sweep.is_in_packs() {
-        return dispatch_for!(T, come_in_eights(cells), |k| in_packs(
-            k, &sweep, positions, cells, what, sink
+        return dispatch_for!(T, come_in_eights(sites.cells), |k| in_packs(
+            k, &sweep, sites, what, sink
         ));
     }
     let mut sums = StencilSums::new(basis, grid);
     let slopes = [T::one(); D];
-    for (p, (x, cell)) in positions.iter().zip(cells).enumerate() {
+    for (p, place) in sites.cells.iter().zip(sites.positions).enumerate() {
         let group = Group { first: p, count: 1 };
         let parts = what.parts::<One, 1, true>(One, group, &slopes);
-        sums.add(cell, x, &parts, what.places(), &mut sink);
+        sums.add((p, place), &sites.domains, &parts, what.places(), &mut sink);
     }
     sums.flush(&mut sink);
 }
@@ -84,15 +85,16 @@ fn in_packs<
 >(
     k: K,
     sweep: &Sweep<'_, T, D, B>,
-    positions: &[SVector<T, D>],
-    cells: &[Cell<D>],
+    sites: Sites<'_, T, D>,
     what: impl Contribution<T, D, S, C, G>,
     sink: impl FnMut(usize, Sum<T, D, S, C, G>),
 ) {
+    let cells = sites.cells;
     let mut groups = Adding {
         k,
         sweep,
-        positions: &positions[..cells.len()],
+        positions: &sites.positions[..cells.len()],
+        half_lengths: sites.domains.half_lengths,
         cells,
         what: what.cut(cells.len()),
         sums: Sums::<K::V, D, S, C, G>::new(k),
@@ -108,6 +110,7 @@ struct Adding<'a, T, K, V, const D: usize, B, W, F, const S: usize, const C: usi
     k: K,
     sweep: &'a Sweep<'a, T, D, B>,
     positions: &'a [SVector<T, D>],
+    half_lengths: &'a [SVector<T, D>],
     cells: &'a [Cell<D>],
     what: W,
     sums: Sums<V, D, S, C, G>,
@@ -129,7 +132,7 @@ where
         let (k, sweep) = (self.k, self.sweep);
         let cell = &self.cells[group.first];
         let x = group.vectors::<FULL, T, K, D>(k, self.positions);
-        let mut factors = sweep.factors(k, cell, &x);
+        let mut factors = sweep.factors::<FULL, K, N>(k, group, (cell, &x), self.half_lengths);
         if let Some(places) = self.what.places() {
             factors = sweep.moments(k, cell, &x, &factors, places);
         }

@@ -9,6 +9,7 @@ use super::Sweep;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::grid::{Cell, Grid};
+use crate::particles::Sites;
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Lanes, Number, Packs, dispatch_for, each};
 
@@ -29,16 +30,17 @@ pub(super) const fn pair(a: usize, b: usize) -> usize {
 pub(crate) fn sum_pairs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
-    (positions, cells): (&[SVector<T, D>], &[Cell<D>]),
+    sites: Sites<'_, T, D>,
     masses: &[T],
     matrix: &mut impl FnMut(usize, usize, T),
 ) {
-    let sweep = Sweep::new(basis, grid);
+    let (sweep, cells) = (Sweep::new(basis, grid), sites.cells);
     dispatch_for!(T, come_in_eights(cells), |k| {
         let mut pass = PairsOfMasses {
             k,
             sweep: &sweep,
-            positions: &positions[..cells.len()],
+            positions: &sites.positions[..cells.len()],
+            half_lengths: sites.domains.half_lengths,
             cells,
             masses: &masses[..cells.len()],
             sums: PairSums::<_, D>::new::<T, _>(k),
@@ -62,6 +64,7 @@ struct PairsOfMasses<'a, T, K, V, const D: usize, B, M> {
     k: K,
     sweep: &'a Sweep<'a, T, D, B>,
     positions: &'a [SVector<T, D>],
+    half_lengths: &'a [SVector<T, D>],
     cells: &'a [Cell<D>],
     masses: &'a [T],
     sums: PairSums<V, D>,
@@ -80,7 +83,7 @@ where
         let (k, sweep) = (self.k, self.sweep);
         let cell = &self.cells[group.first];
         let x = group.vectors::<FULL, T, K, D>(k, self.positions);
-        let factors = sweep.factors(k, cell, &x);
+        let factors = sweep.factors::<FULL, K, N>(k, group, (cell, &x), self.half_lengths);
         let mass = group.amounts::<FULL, T, K>(k, self.masses);
         self.sums.add(k, sweep, cell, &factors, mass, self.matrix);
     }
@@ -252,6 +255,7 @@ mod tests {
     use super::*;
     use crate::basis::{BSpline, Linear};
     use crate::mass::Lattice;
+    use crate::particles::Domains;
     use crate::simd::{Four, Plain};
 
     /// Points that wander through a grid of three cells an axis, some cells of which get none and some many.
@@ -264,7 +268,12 @@ mod tests {
         let zeros = || Lattice::zeros(basis.dofs(&grid), basis.reach());
         let (mut found, mut expected) = (zeros(), zeros());
         assert!(sums_apply(basis, &grid));
-        sum_pairs(basis, &grid, (&positions, &cells), &masses, &mut |i, j, mass| {
+        let sites = Sites {
+            positions: &positions,
+            cells: &cells,
+            domains: Domains::none().views(),
+        };
+        sum_pairs(basis, &grid, sites, &masses, &mut |i, j, mass| {
             found.add(i, j, mass)
         });
         for ((x, cell), &mass) in positions.iter().zip(&cells).zip(&masses) {

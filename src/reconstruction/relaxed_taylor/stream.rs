@@ -190,11 +190,6 @@ fn emit_particles<T: Scalar, const D: usize, Q: Field<T>>(
 ) {
     for &p in cloud.bins.particles_in(cell) {
         let p = p as usize;
-        let point = Point {
-            cell: *cloud.bins.cell_of(p),
-            position: cloud.positions[p],
-            moves: true,
-        };
-        sink(&point, value(p).scaled(cloud.volumes[p]));
+        sink(&Point::of_particle(cloud, p), value(p).scaled(cloud.volumes[p]));
     }
 }

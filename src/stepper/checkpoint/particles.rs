@@ -24,7 +24,9 @@ where
         out.numbers(&self.mass)?;
         out.numbers(&self.volume)?;
         out.records(&self.state)?;
-        out.records(&self.phase)
+        out.records(&self.phase)?;
+        out.records(&self.domains.half_lengths)?;
+        out.records(&self.domains.half_edges)
     }
 
     /// Their states take so many numbers each.
@@ -38,6 +40,8 @@ where
         from.numbers(&mut self.volume)?;
         from.records("the state of particle", &mut self.state)?;
         from.records("the second phase of particle", &mut self.phase)?;
+        from.records("the half lengths of particle", &mut self.domains.half_lengths)?;
+        from.records("the half edges of particle", &mut self.domains.half_edges)?;
         Ok(self.validate_with(numbers_each)?)
     }
 }

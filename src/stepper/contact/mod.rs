@@ -42,6 +42,7 @@ use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::transfer::Transfer;
 use delassus::Delassus;
+pub(super) use shape::shapes;
 use subspace::Subspace;
 use wall::{Contact, Wall, WallDofs};
 
@@ -253,7 +254,7 @@ where
         contact.velocity = vec![SVector::zeros(); places];
         contact.impulse = vec![SVector::zeros(); places];
         contact.gain = vec![SVector::zeros(); dofs];
-        let shapes = shape::shapes(&self.grid, &self.particles.initial_position);
+        let shapes = shapes(&self.grid, &self.particles.initial_position);
         contact.shapes.resize(shapes.len(), SVector::zeros());
         for (place, shape) in shapes.into_iter().enumerate() {
             contact.shapes[self.order.number(place)] = shape;
@@ -282,14 +283,15 @@ where
         let (basis, grid, particles) = (&self.basis, &self.grid, &self.particles);
         delassus.clear();
         near.clear();
-        for (p, (x, cell)) in particles.position.iter().zip(self.bins.cells()).enumerate() {
+        let sites = particles.sites(self.bins.cells());
+        for (p, (x, cell)) in sites.positions.iter().zip(sites.cells).enumerate() {
             // Functions of further cells have no value at the wall.
             if !Wall::all(forcing).any(|wall| wall.cells_to(grid, cell) <= basis.reach()) {
                 continue;
             }
             let root = particles.volume[p].powf(T::one() / T::count(D));
             let half = shapes[self.order.number(p)] * (root / T::lit(2.0));
-            basis.for_each(grid, cell, x, |dof, phi, _| {
+            sites.for_each(basis, grid, p, |dof, phi, _| {
                 let Some(place) = dofs.place(dof).filter(|_| phi > T::zero()) else {
                     return;
                 };

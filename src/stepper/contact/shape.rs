@@ -12,7 +12,7 @@ const ALIKE: f64 = 1e-6;
 /// Size of each particle along each axis over the `D`-th root of its volume, from the spacing of the
 /// particles in its cell at the start: two by four to a cell are twice as wide as high. Particles in no order
 /// are taken for pieces of the cell's shape.
-pub(super) fn shapes<T: Scalar, const D: usize>(
+pub(in crate::stepper) fn shapes<T: Scalar, const D: usize>(
     grid: &Grid<T, D>,
     initial: &[SVector<T, D>],
 ) -> Vec<SVector<T, D>> {

@@ -64,18 +64,18 @@ where
         gain.fill(SVector::zeros());
         for &p in near.iter() {
             let p = p as usize;
-            let (x, cell) = (&particles.position[p], self.bins.cell_of(p));
+            let sites = particles.sites(self.bins.cells());
             let mut by = SVector::zeros();
-            basis.for_each(grid, cell, x, |dof, phi, _| {
+            sites.for_each(basis, grid, p, |dof, phi, _| {
                 if let Some(place) = dofs.place(dof) {
                     by += impulse[place] * phi;
                 }
             });
             let mass = particles.mass[p];
-            particles.velocity[p] += by;
             let momentum = by * mass;
             action.impulse += momentum;
-            basis.for_each(grid, cell, x, |dof, phi, _| gain[dof] += momentum * phi);
+            sites.for_each(basis, grid, p, |dof, phi, _| gain[dof] += momentum * phi);
+            particles.velocity[p] += by;
         }
         let velocities = self.dofs.velocity.iter_mut().zip(&self.dofs.mass);
         for ((velocity, &mass), gain) in velocities.zip(gain.iter()) {

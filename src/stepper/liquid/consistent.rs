@@ -47,7 +47,7 @@ where
             (&drag_of[..], drag),
         ];
         for (masses, matrix) in filled {
-            let bodies = (&particles.position[..], self.bins.cells());
+            let bodies = particles.sites(self.bins.cells());
             fill_with_pairs(&self.basis, &self.grid, bodies, masses, &mut self.pairs, matrix);
             let space = (&self.basis, &self.grid, &self.bins);
             lump_undetermined_cells(space, &self.reconstruction, matrix);

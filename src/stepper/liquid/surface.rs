@@ -119,10 +119,9 @@ where
                 PoreCondition::Pressure(pressure) => (pressure - even.pressure) * outward,
                 PoreCondition::Sealed => T::zero(),
             };
-            let x = self.surface_position(point);
-            let cell = self.bins.cell_of(point.particle);
+            let (cell, x) = self.loaded_place(point);
             let (whole, liquid) = (&mut self.dofs.force, &mut self.liquid.force);
-            self.basis.for_each(&self.grid, cell, &x, |i, phi, _| {
+            self.basis.for_each(&self.grid, &cell, &x, |i, phi, _| {
                 whole[i] += load * (area * phi);
                 liquid[i][axis] += pressure * area * phi;
             });

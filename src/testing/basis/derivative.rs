@@ -12,7 +12,7 @@ use crate::testing::worst::Worst;
 
 /// Step of the finite differences in cell sizes: exact in binary, small against the cell, and large enough
 /// for round-off to leave half the digits even in `f32`.
-const STEP: f64 = 1.0 / 128.0;
+pub(super) const STEP: f64 = 1.0 / 128.0;
 
 pub(super) fn check<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
@@ -47,7 +47,11 @@ pub(super) fn check<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
 }
 
 /// `x`, moved so far from the edges of its cell that differences stay within: gradients may jump at edges.
-fn inside<T: Scalar, const D: usize>(grid: &Grid<T, D>, cell: &Cell<D>, x: &SVector<T, D>) -> SVector<T, D> {
+pub(super) fn inside<T: Scalar, const D: usize>(
+    grid: &Grid<T, D>,
+    cell: &Cell<D>,
+    x: &SVector<T, D>,
+) -> SVector<T, D> {
     SVector::from_fn(|a, _| {
         let margin = grid.cell_size()[a] * T::lit(3.0 * STEP);
         let (low, high) = (grid.edge(a, cell[a] as usize), grid.edge(a, cell[a] as usize + 1));
@@ -66,7 +70,7 @@ fn compare<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     cell: &Cell<D>,
     x: &SVector<T, D>,
     axis: usize,
-    visitor: Visitor,
+    visitor: Visitor<T, D>,
     worst: &mut Worst<T>,
 ) -> Result<(), Failure> {
     let here = Sample::new(basis, grid, cell, x, visitor)?;

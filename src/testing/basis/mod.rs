@@ -2,6 +2,7 @@
 
 mod continuity;
 mod derivative;
+mod domains;
 mod doors;
 mod pointwise;
 mod sample;
@@ -47,7 +48,8 @@ impl BasisClaims {
 /// the half band, values on faces, values at fixed points, and what the fast ways of a step see
 /// ([`BasisFamily::factors`], what [`BasisFamily::AT_FIXED_POINTS`] and [`BasisFamily::CONSTANT_GRADIENT`]
 /// say); on the edges between cells the same values from both; and from points of its own the `claims`, the
-/// `degree`, and that no DOF is out of reach.
+/// `degree`, and that no DOF is out of reach. A basis that asks for domains ([`BasisFamily::DOMAIN`]) is
+/// checked over several of them besides, and over one that has vanished it must be what it is at points.
 ///
 /// Choose points on edges and faces too. The cost grows with the square of the number of DOFs: a few cells
 /// along each axis are enough, and different numbers of them find more.
@@ -67,6 +69,7 @@ pub fn check_basis<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
         continuity::check(basis, grid, x)?;
     }
     derivative::check(basis, grid, points, claims)?;
+    domains::check(basis, grid, points, claims)?;
     span::check(basis, grid, claims)
 }
 

@@ -83,7 +83,11 @@ fn same_dofs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     Ok(())
 }
 
-fn unity<T: Scalar, const D: usize>(s: &Sample<T, D>, x: &SVector<T, D>, error: T) -> Result<(), Failure> {
+pub(super) fn unity<T: Scalar, const D: usize>(
+    s: &Sample<T, D>,
+    x: &SVector<T, D>,
+    error: T,
+) -> Result<(), Failure> {
     let sum = s.value.iter().fold(T::zero(), |sum, &v| sum + v);
     let allowed = error * T::count(s.calls);
     near(
@@ -95,7 +99,7 @@ fn unity<T: Scalar, const D: usize>(s: &Sample<T, D>, x: &SVector<T, D>, error: 
     )
 }
 
-fn non_negative<T: Scalar, const D: usize>(
+pub(super) fn non_negative<T: Scalar, const D: usize>(
     s: &Sample<T, D>,
     x: &SVector<T, D>,
     error: T,
@@ -107,7 +111,7 @@ fn non_negative<T: Scalar, const D: usize>(
 }
 
 /// The gradients carry the error of the values times the slope that goes with it.
-fn gradient_sum<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+pub(super) fn gradient_sum<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
     s: &Sample<T, D>,
@@ -146,7 +150,7 @@ fn same_values<T: Scalar, const D: usize>(
     })
 }
 
-fn half_band<T: Scalar, const D: usize>(
+pub(super) fn half_band<T: Scalar, const D: usize>(
     s: &Sample<T, D>,
     x: &SVector<T, D>,
     band: usize,

@@ -1,6 +1,6 @@
 //! Everything that a basis says at one point, by DOF.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
@@ -16,11 +16,13 @@ pub(super) struct Sample<T, const D: usize> {
     pub(super) calls: usize,
 }
 
-/// Which of the two visitors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Visitor {
+/// Which of the visitors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Visitor<T, const D: usize> {
     Moving,
     Fixed,
+    /// That of particles with this domain: half edge vectors, one a column.
+    Over(SMatrix<T, D, D>),
 }
 
 impl<T: Scalar, const D: usize> Sample<T, D> {
@@ -30,7 +32,7 @@ impl<T: Scalar, const D: usize> Sample<T, D> {
         grid: &Grid<T, D>,
         cell: &Cell<D>,
         x: &SVector<T, D>,
-        visitor: Visitor,
+        visitor: Visitor<T, D>,
     ) -> Result<Self, Failure> {
         let count = basis.dof_count(grid);
         let mut sample = Self {
@@ -52,6 +54,7 @@ impl<T: Scalar, const D: usize> Sample<T, D> {
         match visitor {
             Visitor::Moving => basis.for_each(grid, cell, x, take),
             Visitor::Fixed => basis.for_each_at_fixed_point(grid, cell, x, take),
+            Visitor::Over(domain) => basis.for_each_over(grid, cell, x, &domain, take),
         }
         match outside {
             Some(dof) => at_least(

@@ -232,6 +232,7 @@ impl<const AT: bool> Faulty<AT> {
             cell,
             position,
             moves: true,
+            particle: None,
         }
     }
 }
