@@ -10,10 +10,10 @@ use super::Dofs;
 use super::liquid::UniformLoad;
 use super::spans::{Spans, Store, share};
 use crate::basis::BasisFamily;
-use crate::grid::Grid;
+use crate::grid::{Cell, Grid};
 use crate::parallel::{Maybe, SpanWindow, Windows, add_up, each_span};
 use crate::particles::{Bins, Particles};
-use crate::phase::Phase;
+use crate::phase::{OnePhase, Phase};
 use crate::scalar::Scalar;
 use crate::simd::{Packs, each, in_lanes};
 use crate::transfer::{Contribution, Group, Parts, Sum, for_values, p2g};
@@ -144,7 +144,24 @@ impl<T: Scalar, const D: usize, P: Phase<T, D>> Clone for Amounts<'_, T, D, P> {
 
 impl<T: Scalar, const D: usize, P: Phase<T, D>> Copy for Amounts<'_, T, D, P> {}
 
-impl<T: Scalar, const D: usize, P: Phase<T, D>> Amounts<'_, T, D, P> {
+/// As many as anybody asks for; they take no memory.
+const NOTHING: &[()] = &[(); usize::MAX];
+
+impl<'a, T: Scalar, const D: usize, P: Phase<T, D>> Amounts<'a, T, D, P> {
+    /// Those of a solid without pores.
+    fn of_solid(self) -> Amounts<'a, T, D, OnePhase> {
+        Amounts {
+            masses: self.masses,
+            volumes: self.volumes,
+            velocities: self.velocities,
+            stresses: self.stresses,
+            data: &NOTHING[..self.data.len()],
+            phase: &OnePhase,
+            liquid_masses: None,
+            even: self.even,
+        }
+    }
+
     /// What the balance of the whole feels of a particle's stress; with a liquid that flows less the even
     /// load.
     #[inline(always)]
@@ -372,11 +389,58 @@ impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usi
 }
 
 /// Sums over the particles, in as many spans as threads may share.
-#[inline(never)]
+///
+/// Compiled for as few types as there are sweeps: mass and momentum of the solid are the same whatever fills
+/// its pores, and values are those of linear functions for all bases that have these.
 pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C: usize, const G: usize>(
     (basis, grid, bins): (&B, &Grid<T, D>, &Bins<D>),
     particles: &Particles<T, D, N, P::Particle>,
     (phase, even, liquid_masses): (&P, UniformLoad<T>, Option<&[T]>),
+    spans: &mut Spans<T, D>,
+    targets: Targets<'_, T, D, S, C, G>,
+) where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    P: Phase<T, D>,
+{
+    let places = (&particles.position[..], bins.cells());
+    let amounts = Amounts {
+        masses: &particles.mass,
+        volumes: &particles.volume,
+        velocities: &particles.velocity,
+        stresses: &particles.stress,
+        data: &particles.phase,
+        phase,
+        liquid_masses,
+        even,
+    };
+    if const { G > 0 } {
+        sum_amounts((basis, grid), places, amounts, spans, targets);
+    } else if const { S <= 1 && C <= 1 } {
+        let solid = amounts.of_solid();
+        for_values!(B, basis, |basis| sum_amounts(
+            (basis, grid),
+            places,
+            solid,
+            spans,
+            targets
+        ));
+    } else {
+        for_values!(B, basis, |basis| sum_amounts(
+            (basis, grid),
+            places,
+            amounts,
+            spans,
+            targets
+        ));
+    }
+}
+
+#[inline(never)]
+fn sum_amounts<T, const D: usize, B, P, const S: usize, const C: usize, const G: usize>(
+    (basis, grid): (&B, &Grid<T, D>),
+    places: (&[SVector<T, D>], &[Cell<D>]),
+    amounts: Amounts<'_, T, D, P>,
     spans: &mut Spans<T, D>,
     mut targets: Targets<'_, T, D, S, C, G>,
 ) where
@@ -390,12 +454,22 @@ pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C:
         store,
         ..
     } = spans;
-    let (span, parallel) = share::<D>(spans, particles.position.len(), lengths[0]);
+    let Amounts {
+        masses,
+        volumes,
+        velocities,
+        stresses,
+        data,
+        phase,
+        liquid_masses,
+        even,
+    } = amounts;
+    let (span, parallel) = share::<D>(spans, masses.len(), lengths[0]);
     let work = (
-        (&particles.position[..], bins.cells()),
-        (&particles.mass[..], &particles.volume[..]),
-        (&particles.velocity[..], &particles.stress[..]),
-        (&particles.phase[..], Maybe(liquid_masses)),
+        places,
+        (masses, volumes),
+        (velocities, stresses),
+        (data, Maybe(liquid_masses)),
         store.windows(spans, &mut targets),
     );
     each_span(parallel, span, work, &|_,
@@ -417,17 +491,7 @@ pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C:
             liquid_masses: liquid.0,
             even,
         };
-        if const { G > 0 } {
-            p2g(basis, grid, places, amounts, move |dof, sum| sums.add(dof, sum));
-        } else {
-            for_values!(B, basis, |basis| p2g(
-                basis,
-                grid,
-                places,
-                amounts,
-                move |dof, sum| sums.add(dof, sum)
-            ));
-        }
+        p2g(basis, grid, places, amounts, move |dof, sum| sums.add(dof, sum));
     });
     store.add_up(spans, &mut targets);
 }
