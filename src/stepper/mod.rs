@@ -51,6 +51,7 @@ mod spans;
 mod step;
 mod sums;
 mod velocity;
+mod waves;
 mod window;
 
 pub use critical::{CriticalStep, Mechanism};
