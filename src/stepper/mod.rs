@@ -190,27 +190,14 @@ where
             mut particles,
             surface,
         } = setup;
-        particles.validate_with(law.numbers())?;
-        phase.validate()?;
-        refuse_unknown_stress(&law, &particles)?;
+        check_material(&law, &phase, &particles)?;
         if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {
             return Err(SetupError::OnePhaseOnly);
         }
         if R::PARTICLE_MATRIX && D > 1 {
             polynomial::refuse_bends_within_cells(&basis, &grid)?;
         }
-        for point in &surface {
-            point.validate::<D>(particles.len())?;
-        }
-        let bins = Bins::without_lists(&grid, &particles.position).map_err(|Outside(particle)| {
-            SetupError::Outside {
-                particle,
-                position: values(&particles.position[particle]),
-            }
-        })?;
-        for (cell, x) in bins.cells().iter().zip(&mut particles.position) {
-            grid.nudge_off_edges(cell, x);
-        }
+        let bins = find_cells(&grid, &surface, &mut particles.position)?;
         let grid = match B::FOLLOWS_WINDOW {
             true => window::lay(grid, bins.cells()),
             false => grid,
@@ -369,7 +356,7 @@ where
             }
         }
         forcing.suits_phase(P::FLOWS)?;
-        self.walls_can_be_held(forcing)?;
+        faces::walls_can_be_held(forcing, &self.left_out)?;
         let mut outcome = Ok(Energy::none());
         within_pool(self.is_worth_sending(), &mut || {
             outcome = self.step_here([kick, dt], forcing, measure);
@@ -560,6 +547,38 @@ where
     pub fn bytes_per_particle(&self) -> f64 {
         self.bytes() as f64 / self.particles.len() as f64
     }
+}
+
+/// Checks particles and what they are made of.
+#[inline(never)]
+fn check_material<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
+    law: &L,
+    phase: &P,
+    particles: &Particles<T, D, L::Number, P::Particle>,
+) -> Result<(), SetupError> {
+    particles.validate_with(law.numbers())?;
+    phase.validate()?;
+    refuse_unknown_stress(law, particles)
+}
+
+/// Checks where surfaces and particles are, and moves the latter off the edges of their cells.
+#[inline(never)]
+fn find_cells<T: Scalar, const D: usize>(
+    grid: &Grid<T, D>,
+    surface: &[SurfacePoint<T>],
+    positions: &mut [SVector<T, D>],
+) -> Result<Bins<D>, SetupError> {
+    for point in surface {
+        point.validate::<D>(positions.len())?;
+    }
+    let bins = Bins::without_lists(grid, positions).map_err(|Outside(particle)| SetupError::Outside {
+        particle,
+        position: values(&positions[particle]),
+    })?;
+    for (cell, x) in bins.cells().iter().zip(positions) {
+        grid.nudge_off_edges(cell, x);
+    }
+    Ok(bins)
 }
 
 /// Refuses a particle whose stress has no meaning to the law.
