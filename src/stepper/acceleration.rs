@@ -91,6 +91,14 @@ impl<'a, T: Scalar, const D: usize> Walls<'a, T, D> {
         }
     }
 
+    /// Of solid and liquid.
+    pub(super) fn of_both(face_dofs: &'a [Vec<u32>], forcing: &'a Forcing<T, D>) -> [Self; 2] {
+        [
+            Self::of_solid(face_dofs, forcing),
+            Self::of_liquid(face_dofs, forcing),
+        ]
+    }
+
     /// Calls `f(dof, axis, velocity, acceleration)` for every held component of the DOFs on held faces. Where
     /// faces meet, the later one has the last word.
     #[inline(always)]
