@@ -202,23 +202,23 @@ where
             true => window::lay(grid, bins.cells()),
             false => grid,
         };
-        let order = Order::new(&grid, bins.cells());
-        let mass_model = MassModel::of::<T, D, R>(velocity_mass);
-        let surface_count = surface.len();
-        let crossed_count = if R::RELAXES { grid.cell_count() } else { 0 };
-        let relaxed_count = if R::RELAXES && law.remembers() {
-            particles.len()
-        } else {
-            0
-        };
-        let seal = {
-            let points = if P::FLOWS { surface_count } else { 0 };
-            let along = basis.degree() + 1;
-            let beside = along.pow(D as u32 - 1);
-            liquid::Seal::new(points, along * beside, beside)
-        };
-        let spans = Spans::new(particles.len());
-        let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
+        let along = basis.degree() + 1;
+        let parts = Parts::new(
+            &grid,
+            bins,
+            &particles.mass,
+            Counts {
+                surface: surface.len(),
+                crossed: if R::RELAXES { grid.cell_count() } else { 0 },
+                relaxed: match R::RELAXES && law.remembers() {
+                    true => particles.len(),
+                    false => 0,
+                },
+                functions: [along, along.pow(D as u32 - 1)],
+                flows: P::FLOWS,
+                pairs: R::PARTICLE_MATRIX,
+            },
+        );
         let mut stepper = Self {
             grid,
             basis,
@@ -227,29 +227,29 @@ where
             phase,
             particles,
             surface,
-            bins,
-            order,
-            cuts: Vec::with_capacity(surface_count),
-            dofs: Dofs::none(),
-            liquid: Dofs::none(),
+            bins: parts.bins,
+            order: parts.order,
+            cuts: parts.cuts,
+            dofs: parts.dofs,
+            liquid: parts.liquid,
             drag: Vec::new(),
-            joint: liquid::Joint::none(),
-            seal,
-            spans,
+            joint: parts.joint,
+            seal: parts.seal,
+            spans: parts.spans,
             strayed: false,
-            crossed: Vec::with_capacity(crossed_count),
-            relaxed: vec![SMatrix::zeros(); relaxed_count],
-            balance: balance::Balance::none(),
-            contact: contact::WallContact::none(),
-            pairs: Pairs::new(R::PARTICLE_MATRIX),
+            crossed: parts.crossed,
+            relaxed: parts.relaxed,
+            balance: parts.balance,
+            contact: parts.contact,
+            pairs: parts.pairs,
             body_forces: Vec::new(),
             face_dofs: Vec::new(),
             left_out: Vec::new(),
             velocity_mass,
-            mass: mass_model,
+            mass: MassModel::of::<T, D, R>(velocity_mass),
             time: T::zero(),
             steps: 0,
-            diagnostics: Diagnostics::new(mass, P::FLOWS),
+            diagnostics: parts.diagnostics,
         };
         if P::FLOWS {
             stepper.reconstruction.configure_for_saturated();
@@ -371,6 +371,7 @@ where
     }
 
     /// Takes in where the particles are.
+    #[inline(never)]
     fn prepare(&mut self) {
         self.spans.fresh = false;
         if self.strayed {
@@ -546,6 +547,65 @@ where
     /// [`Stepper::bytes`] over the number of particles.
     pub fn bytes_per_particle(&self) -> f64 {
         self.bytes() as f64 / self.particles.len() as f64
+    }
+}
+
+/// Of how many things a stepper keeps something.
+struct Counts {
+    surface: usize,
+    /// Cells whose Courant numbers are kept.
+    crossed: usize,
+    /// Particles whose relaxed stress is kept.
+    relaxed: usize,
+    /// Functions of a cell along an axis, and on a side of it.
+    functions: [usize; 2],
+    /// Whether a liquid flows.
+    flows: bool,
+    /// Whether particles are summed in pairs of DOFs.
+    pairs: bool,
+}
+
+/// What a stepper keeps besides its setup, before there are DOFs. Made in a function of its own: what frees
+/// the fields that are there already where the next one fails is else compiled for every stepper.
+struct Parts<T: Scalar, const D: usize> {
+    bins: Bins<D>,
+    order: Order,
+    cuts: Vec<Cut<T>>,
+    dofs: Dofs<T, D>,
+    liquid: Dofs<T, D>,
+    joint: liquid::Joint<T, D>,
+    seal: liquid::Seal<T>,
+    spans: Spans<T, D>,
+    crossed: Vec<CourantNumbers<T>>,
+    relaxed: Vec<SMatrix<T, D, D>>,
+    balance: balance::Balance<T, D>,
+    contact: contact::WallContact<T, D>,
+    pairs: Pairs<T, D>,
+    diagnostics: Diagnostics<T>,
+}
+
+impl<T: Scalar, const D: usize> Parts<T, D> {
+    #[inline(never)]
+    fn new(grid: &Grid<T, D>, bins: Bins<D>, masses: &[T], counts: Counts) -> Self {
+        let mass = masses.iter().fold(T::zero(), |sum, &m| sum + m);
+        let sealed = if counts.flows { counts.surface } else { 0 };
+        let [along, beside] = counts.functions;
+        Self {
+            order: Order::new(grid, bins.cells()),
+            bins,
+            cuts: Vec::with_capacity(counts.surface),
+            dofs: Dofs::none(),
+            liquid: Dofs::none(),
+            joint: liquid::Joint::none(),
+            seal: liquid::Seal::new(sealed, along * beside, beside),
+            spans: Spans::new(masses.len()),
+            crossed: Vec::with_capacity(counts.crossed),
+            relaxed: vec![SMatrix::zeros(); counts.relaxed],
+            balance: balance::Balance::none(),
+            contact: contact::WallContact::none(),
+            pairs: Pairs::new(counts.pairs),
+            diagnostics: Diagnostics::new(mass, counts.flows),
+        }
     }
 }
 
