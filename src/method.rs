@@ -267,12 +267,11 @@ impl Method {
         }
         let reconstruction = self.reconstruction;
         match self.basis {
-            Basis::Linear => reconstruction.with_basis(Linear, visitor),
-            // Known at compile time: beyond one dimension the hats are there once.
-            Basis::BSpline { degree: 1 } if const { D > 1 } => reconstruction.with_basis(Linear, visitor),
+            // The B-splines of degree 1 are the hats.
+            Basis::Linear | Basis::BSpline { degree: 1 } => reconstruction.with_basis(Linear, visitor),
+            // Known at compile time.
             Basis::BSpline { degree: 3 } if const { D > 1 } => None,
             Basis::DualDomain => reconstruction.with_basis(DualDomain::new(), visitor),
-            Basis::BSpline { degree: 1 } => reconstruction.with_basis(BSpline::<1>, visitor),
             Basis::BSpline { degree: 2 } => reconstruction.with_basis(BSpline::<2>, visitor),
             Basis::BSpline { degree: 3 } => reconstruction.with_basis(BSpline::<3>, visitor),
             Basis::BSpline { .. } => None,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::SVector;
 
-use super::tensor::{self, AxisBasis, AxisCell, Factors, Functions, axis_cell, factors_of};
+use super::tensor::{self, AxisBasis, AxisCell, Factors, Functions, Row, axis_cell, factors_of};
 use super::{BasisFamily, FixedPoints, Linear};
 use crate::grid::{Cell, Grid};
 use crate::particles::Bins;
@@ -60,6 +60,22 @@ impl DualDomain {
                 bits | below | above
             }),
         }
+    }
+
+    /// The functions along each axis at a point.
+    #[inline(always)]
+    fn rows<T: Scalar, const D: usize>(
+        &self,
+        grid: &Grid<T, D>,
+        cell: &Cell<D>,
+        x: &SVector<T, D>,
+    ) -> [Row<T, 4>; D] {
+        let missing = self.missing(grid, cell);
+        each(|axis| {
+            let at = axis_cell(grid, cell, axis);
+            let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
+            (first_node(at), functions(One, at, unit, ends(missing, axis)))
+        })
     }
 }
 
@@ -190,13 +206,8 @@ impl<T: Scalar, const D: usize> BasisFamily<T, D> for DualDomain {
         x: &SVector<T, D>,
         f: impl FnMut(usize, T, SVector<T, D>),
     ) {
-        let missing = self.missing(grid, cell);
-        let rows = each(|axis| {
-            let at = axis_cell(grid, cell, axis);
-            let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
-            (first_node(at), functions(One, at, unit, ends(missing, axis)))
-        });
-        tensor::product_of_rows(grid, &rows, |cells| cells + 1, f);
+        let dofs = tensor::dofs::<T, D, 4, _>(self, grid);
+        tensor::product_of_rows(grid, &self.rows(grid, cell, x), dofs, f);
     }
 
     #[inline(always)]

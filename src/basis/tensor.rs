@@ -205,11 +205,13 @@ pub fn interpolation_point<T: Scalar, const D: usize, const W: usize, A: AxisBas
 }
 
 /// DOFs along each axis of the product of `family` with itself, in the grid's window.
+#[inline(always)]
 pub fn dofs<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
     family: &A,
     grid: &Grid<T, D>,
 ) -> [usize; D] {
-    grid.window().shape().map(|cells| family.dofs_on_axis(cells))
+    let shape = grid.window().shape();
+    each(|axis| family.dofs_on_axis(shape[axis]))
 }
 
 /// DOFs that points in the cells with numbers from that of `first` to that of `last` see. Along each axis the
@@ -279,12 +281,22 @@ pub fn for_each<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
     x: &SVector<T, D>,
     f: impl FnMut(usize, T, SVector<T, D>),
 ) {
-    let rows = each(|axis| {
+    product_of_rows(grid, &rows(family, grid, cell, x), dofs(family, grid), f);
+}
+
+/// Here and not in [`for_each`]: what is written there is compiled for everything that is done with DOFs.
+#[inline(always)]
+fn rows<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, W>>(
+    family: &A,
+    grid: &Grid<T, D>,
+    cell: &Cell<D>,
+    x: &SVector<T, D>,
+) -> [Row<T, W>; D] {
+    each(|axis| {
         let at = axis_cell(grid, cell, axis);
         let unit = grid.unit_coordinate(axis, cell[axis], x[axis]);
         (family.first_dof(at), family.evaluate(One, at, unit))
-    });
-    product_of_rows(grid, &rows, |cells| family.dofs_on_axis(cells), f);
+    })
 }
 
 /// The same over the size of a particle, half its edge vectors.
@@ -313,24 +325,22 @@ pub fn for_each_over<T: Scalar, const D: usize, const W: usize, A: AxisBasis<T, 
             (family.first_dof(at), family.evaluate_over(One, at, unit, half))
         },
     );
-    product_of_rows(grid, &rows, |cells| family.dofs_on_axis(cells), f);
+    product_of_rows(grid, &rows, dofs(family, grid), f);
 }
 
 /// The functions of a cell of an axis at one point, after the first of their DOFs.
 pub(crate) type Row<T, const W: usize> = (usize, Functions<T, W>);
 
-/// Visits the products of `rows`, one an axis, on a lattice of `dofs(cells)` DOFs along an axis of so many
-/// cells.
+/// Visits the products of `rows`, one an axis, on a lattice of so many DOFs along each axis.
 #[inline(always)]
 pub(crate) fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
     grid: &Grid<T, D>,
     rows: &[Row<T, W>; D],
-    dofs: impl Fn(usize) -> usize,
+    dofs: [usize; D],
     mut f: impl FnMut(usize, T, SVector<T, D>),
 ) {
     let inverse = grid.inverse_cell_size();
-    let first = grid.window().first();
-    let lattice = (first, grid.window().shape().map(dofs));
+    let lattice = (grid.window().first(), dofs);
     if D == 1 {
         let (dof, functions) = &rows[0];
         for k in 0..W {

@@ -62,6 +62,9 @@ fn divide_by_masses<T: Scalar, const D: usize>(
     }
 }
 
+/// Takes the DOFs of a held face, which components are held, velocity and acceleration told.
+type OnFace<'f, T, const D: usize> = dyn FnMut(&[u32], &[bool; D], &SVector<T, D>, &SVector<T, D>) + 'f;
+
 /// The held faces that one of the phases meets.
 #[derive(Clone, Copy)]
 pub(super) struct Walls<'a, T, const D: usize> {
@@ -88,10 +91,30 @@ impl<'a, T: Scalar, const D: usize> Walls<'a, T, D> {
         }
     }
 
+    /// Of solid and liquid.
+    pub(super) fn of_both(face_dofs: &'a [Vec<u32>], forcing: &'a Forcing<T, D>) -> [Self; 2] {
+        [
+            Self::of_solid(face_dofs, forcing),
+            Self::of_liquid(face_dofs, forcing),
+        ]
+    }
+
     /// Calls `f(dof, axis, velocity, acceleration)` for every held component of the DOFs on held faces. Where
     /// faces meet, the later one has the last word.
     #[inline(always)]
     pub(super) fn for_each_held(&self, mut f: impl FnMut(usize, usize, T, T)) {
+        self.for_each_face(&mut |dofs, held, velocity, acceleration| {
+            for &dof in dofs {
+                for axis in (0..D).filter(|&axis| held[axis]) {
+                    f(dof as usize, axis, velocity[axis], acceleration[axis]);
+                }
+            }
+        });
+    }
+
+    /// The same by held faces: one call through a pointer for all DOFs of a face.
+    #[inline(never)]
+    fn for_each_face(&self, f: &mut OnFace<'_, T, D>) {
         for (face, dofs) in Face::all::<D>().zip(self.face_dofs) {
             let FaceCondition::Held {
                 held,
@@ -104,11 +127,7 @@ impl<'a, T: Scalar, const D: usize> Walls<'a, T, D> {
             if self.liquid && matches!(self.forcing.pores(face), PoreCondition::Pressure(_)) {
                 continue;
             }
-            for &dof in dofs {
-                for axis in (0..D).filter(|&axis| held[axis]) {
-                    f(dof as usize, axis, velocity[axis], acceleration[axis]);
-                }
-            }
+            f(dofs, held, velocity, acceleration);
         }
     }
 }

@@ -33,6 +33,7 @@ impl<T: Scalar, const D: usize> Balance<T, D> {
 
     /// No force yet in this step. The particles' momentum is summed before the first step; later it is known
     /// from the step before.
+    #[inline(never)]
     pub(super) fn begin(&mut self, velocities: &[SVector<T, D>], masses: &[T]) {
         *self = Self {
             momentum: self.momentum,

@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use super::Stepper;
+use super::order::Order;
 use crate::basis::BasisFamily;
 use crate::law::LawSweep;
 use crate::phase::Phase;
@@ -24,11 +25,8 @@ where
     /// allocates. Where a liquid flows through the pores it is the force per mass of both, the solid and the
     /// liquid that the particle holds.
     pub fn set_body_forces(&mut self, mut force: impl FnMut(&SVector<T, D>) -> SVector<T, D>) {
-        // By the particles' numbers: their order in memory may change before a step uses them.
-        self.body_forces.resize(self.particles.len(), SVector::zeros());
-        for (place, x) in self.particles.initial_position.iter().enumerate() {
-            self.body_forces[self.order.number(place)] = force(x);
-        }
+        let initial = &self.particles.initial_position;
+        at_particles(initial, &self.order, &mut force, &mut self.body_forces);
     }
 
     /// `f_i += sum_p m_p b_p phi_i(x_p)`.
@@ -66,5 +64,20 @@ where
                 liquid[i] += on_liquid * phi;
             });
         }
+    }
+}
+
+/// The `forces` of all particles, a function of where they were at the start.
+#[inline(never)]
+fn at_particles<T: Scalar, const D: usize>(
+    initial: &[SVector<T, D>],
+    order: &Order,
+    force: &mut dyn FnMut(&SVector<T, D>) -> SVector<T, D>,
+    forces: &mut Vec<SVector<T, D>>,
+) {
+    // By the particles' numbers: their order in memory may change before a step uses them.
+    forces.resize(initial.len(), SVector::zeros());
+    for (place, x) in initial.iter().enumerate() {
+        forces[order.number(place)] = force(x);
     }
 }

@@ -26,16 +26,17 @@
 
 use nalgebra::SVector;
 
-use super::spans::share;
-use super::{CriticalStep, FaceCondition, Forcing, Mechanism, Stepper};
+use super::spans::{Spans, share};
+use super::{CriticalStep, FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
-use crate::grid::Face;
+use crate::grid::{Face, Grid};
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, many_threads};
+use crate::particles::Sites;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::transfer::Transfer;
+use crate::transfer::{Transfer, for_values};
 
 impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
@@ -56,89 +57,15 @@ where
     /// reconstructions it bounds nothing: [`Stepper::stiffness`].
     pub fn stiffness_bound(&mut self, forcing: &Forcing<T, D>) -> T {
         self.prepare();
-        let held = self.held_dofs(forcing);
-        let mut sums = self.sum_masses_and_slopes(&held);
-        for sum in &mut sums {
-            if sum[0] > T::zero() {
-                sum[1] /= sum[0];
-            }
-        }
-        self.largest_mean(&sums)
-    }
-
-    /// Which DOFs are held in all components.
-    fn held_dofs(&self, forcing: &Forcing<T, D>) -> Vec<bool> {
-        let mut dofs = vec![false; self.dofs.mass.len()];
-        for (face, on_face) in Face::all::<D>().zip(&self.face_dofs) {
-            if matches!(forcing.face(face), FaceCondition::Held { held, .. } if held.iter().all(|&held| held))
-            {
-                for &dof in on_face {
-                    if let Some(dof) = dofs.get_mut(dof as usize) {
-                        *dof = true;
-                    }
-                }
-            }
-        }
-        dofs
-    }
-
-    /// `M_i` and `W_i` of every DOF, for waves of 1 m/s. With a liquid that flows of unit density, since its
-    /// balances differ.
-    fn sum_masses_and_slopes(&self, held: &[bool]) -> Vec<[T; 2]> {
-        let (basis, grid) = (&self.basis, &self.grid);
         let weights = match P::FLOWS {
             true => &self.particles.volume[..],
             false => &self.particles.mass[..],
         };
-        let spans = &self.spans.particles[..];
-        let (span, parallel) = share::<D>(spans, weights.len(), self.spans.lengths[0]);
-        let (mut storage, mut sums) = (Vec::new(), vec![T::zero(); 2 * held.len()]);
-        let work = (
-            self.particles.sites(self.bins.cells()),
-            weights,
-            Windows::new(spans, &mut storage, &mut sums, 2),
-        );
-        each_span(parallel, span, work, &|_, (sites, weights, sums)| {
-            let (first, sums) = sums.one();
-            let (sums, _) = sums.as_chunks_mut::<2>();
-            for (p, &weight) in weights.iter().enumerate() {
-                let mut slopes = T::zero();
-                sites.for_each(basis, grid, p, |i, _, gradient| {
-                    if !held[i] {
-                        slopes += length(&gradient);
-                    }
-                });
-                slopes *= weight;
-                sites.for_each(basis, grid, p, |i, phi, gradient| {
-                    let [mass, bound] = &mut sums[i - first];
-                    *mass += weight * phi;
-                    if !held[i] {
-                        *bound += slopes * length(&gradient);
-                    }
-                });
-            }
-        });
-        add_up(spans, &storage, &mut sums, 2);
-        sums.as_chunks::<2>().0.to_vec()
-    }
-
-    /// Largest mean of the DOFs' ratios at a particle.
-    fn largest_mean(&self, ratios: &[[T; 2]]) -> T {
-        let (basis, grid) = (&self.basis, &self.grid);
-        let mut largest = vec![T::zero(); self.particles.len().div_ceil(PARTICLES)];
-        let parallel = largest.len() > 1 && many_threads();
+        let held = held_dofs(forcing, &self.face_dofs, self.dofs.mass.len());
+        let space = (&self.basis, &self.grid);
         let sites = self.particles.sites(self.bins.cells());
-        let work = (sites, PerSpan(&mut largest[..]));
-        each_span(parallel, PARTICLES, work, &|_, (sites, found)| {
-            let mut most = T::zero();
-            for p in 0..sites.positions.len() {
-                let mut mean = T::zero();
-                sites.for_each(basis, grid, p, |i, phi, _| mean += phi * ratios[i][1]);
-                most = most.max(mean);
-            }
-            found.set(most);
-        });
-        largest.into_iter().fold(T::zero(), T::max)
+        let ratios = slopes_over_masses(space, sites, weights, &self.spans, &held);
+        for_values!(B, space.0, |basis| largest_mean((basis, space.1), sites, &ratios))
     }
 
     /// Largest step (s) of a layout with this `stiffness` (1/m2, of [`Stepper::stiffness`]) for the waves and
@@ -147,42 +74,95 @@ where
     /// than the scheme's stencil in a step. For linear functions along one axis that is the classical
     /// `dt = h / (c + |v|)`. With a liquid that flows also what its drag allows. `None` if there is no wave.
     pub fn largest_step(&self, stiffness: T) -> Option<CriticalStep<T>> {
-        let count = self.particles.len().div_ceil(PARTICLES);
-        let mut found = vec![None; count];
-        let parallel = count > 1 && many_threads();
-        // Only to be cut at spans; a particle's data are found by its number.
-        let work = (&self.particles.position[..], PerSpan(&mut found[..]));
-        each_span(parallel, PARTICLES, work, &|first, (positions, found)| {
-            let limits = (first..first + positions.len()).filter_map(|p| self.largest_step_of(p, stiffness));
-            found.set(limits.reduce(smaller));
-        });
-        found.into_iter().flatten().reduce(smaller)
-    }
-
-    fn largest_step_of(&self, p: usize, stiffness: T) -> Option<CriticalStep<T>> {
-        let (particles, inverse) = (&self.particles, self.grid.inverse_cell_size());
-        let crossing = |v: &SVector<T, D>| v.component_mul(inverse).amax();
-        let mut speed = crossing(&particles.velocity[p]);
-        let limit = if P::FLOWS {
-            let liquid = self.phase.liquid(&particles.phase[p]);
-            speed = speed.max(crossing(&liquid.velocity));
-            self.coupled(p).stable_step(stiffness)?
-        } else {
-            let step = T::lit(2.0) / (self.wave_speed(p) * stiffness.sqrt());
-            CriticalStep {
-                step,
-                mechanism: Mechanism::Wave,
-            }
-        };
-        let step = T::one() / (T::one() / limit.step + speed);
-        // Without waves, or with a stress of which the law knows none, there is no limit.
-        let is_one = limit.step.is_finite() && step > T::zero();
-        is_one.then_some(CriticalStep { step, ..limit })
+        self.waves()
+            .largest_step(self.grid.inverse_cell_size(), stiffness)
     }
 }
 
-fn smaller<T: Scalar>(a: CriticalStep<T>, b: CriticalStep<T>) -> CriticalStep<T> {
-    if b.step < a.step { b } else { a }
+/// Which of `count` DOFs are held in all components.
+#[inline(never)]
+fn held_dofs<T: Scalar, const D: usize>(
+    forcing: &Forcing<T, D>,
+    face_dofs: &[Vec<u32>],
+    count: usize,
+) -> Vec<bool> {
+    let mut dofs = vec![false; count];
+    for (face, on_face) in Face::all::<D>().zip(face_dofs) {
+        if matches!(forcing.face(face), FaceCondition::Held { held, .. } if held.iter().all(|&held| held)) {
+            for &dof in on_face {
+                if let Some(dof) = dofs.get_mut(dof as usize) {
+                    *dof = true;
+                }
+            }
+        }
+    }
+    dofs
+}
+
+/// `M_i` and `W_i / M_i` of every DOF, for waves of 1 m/s; `weights` are the particles' masses. With a liquid
+/// that flows they are those of unit density, since its balances differ.
+#[inline(never)]
+fn slopes_over_masses<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    (basis, grid): (&B, &Grid<T, D>),
+    sites: Sites<'_, T, D>,
+    weights: &[T],
+    spans: &Spans<T, D>,
+    held: &[bool],
+) -> Vec<[T; 2]> {
+    let (span, parallel) = share::<D>(&spans.particles, weights.len(), spans.lengths[0]);
+    let spans = &spans.particles[..];
+    let (mut storage, mut sums) = (Vec::new(), vec![T::zero(); 2 * held.len()]);
+    let work = (sites, weights, Windows::new(spans, &mut storage, &mut sums, 2));
+    each_span(parallel, span, work, &|_, (sites, weights, sums)| {
+        let (first, sums) = sums.one();
+        let (sums, _) = sums.as_chunks_mut::<2>();
+        for (p, &weight) in weights.iter().enumerate() {
+            let mut slopes = T::zero();
+            sites.for_each(basis, grid, p, |i, _, gradient| {
+                if !held[i] {
+                    slopes += length(&gradient);
+                }
+            });
+            slopes *= weight;
+            sites.for_each(basis, grid, p, |i, phi, gradient| {
+                let [mass, bound] = &mut sums[i - first];
+                *mass += weight * phi;
+                if !held[i] {
+                    *bound += slopes * length(&gradient);
+                }
+            });
+        }
+    });
+    add_up(spans, &storage, &mut sums, 2);
+    let mut ratios = sums.as_chunks::<2>().0.to_vec();
+    for [mass, slopes] in &mut ratios {
+        if *mass > T::zero() {
+            *slopes /= *mass;
+        }
+    }
+    ratios
+}
+
+/// Largest mean of the DOFs' ratios at a particle.
+#[inline(never)]
+fn largest_mean<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    (basis, grid): (&B, &Grid<T, D>),
+    sites: Sites<'_, T, D>,
+    ratios: &[[T; 2]],
+) -> T {
+    let mut largest = vec![T::zero(); sites.positions.len().div_ceil(PARTICLES)];
+    let parallel = largest.len() > 1 && many_threads();
+    let work = (sites, PerSpan(&mut largest[..]));
+    each_span(parallel, PARTICLES, work, &|_, (sites, found)| {
+        let mut most = T::zero();
+        for p in 0..sites.positions.len() {
+            let mut mean = T::zero();
+            sites.for_each(basis, grid, p, |i, phi, _| mean += phi * ratios[i][1]);
+            most = most.max(mean);
+        }
+        found.set(most);
+    });
+    largest.into_iter().fold(T::zero(), T::max)
 }
 
 #[inline(always)]

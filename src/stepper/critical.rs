@@ -4,18 +4,17 @@ use nalgebra::{SMatrix, SVector};
 
 use super::acceleration::{Walls, accelerate};
 use super::fitted::Fitted;
-use super::liquid::Coupled;
 use super::sums::Targets;
 use super::velocity::divide_by_mass;
+use super::waves::Waves;
 use super::{FaceCondition, Forcing, Setup, Stepper, cloud};
 use crate::basis::BasisFamily;
-use crate::grid::{Cell, Face};
+use crate::grid::{Cell, Face, Grid};
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, each_span, many_threads};
-use crate::phase::{Drag, Phase, PhaseStep};
+use crate::phase::Phase;
 use crate::reconstruction::{Reconstruction, Stresses};
 use crate::scalar::Scalar;
-use crate::tensor::symmetric;
 use crate::transfer::Transfer;
 
 /// What limits a step.
@@ -37,7 +36,7 @@ pub struct CriticalStep<T> {
 }
 
 /// Strain by which the law's tangent is probed.
-const PROBE_STRAIN: f64 = 1e-3;
+pub(super) const PROBE_STRAIN: f64 = 1e-3;
 /// Iterations over which the eigenvalue must settle. The change in one is no sign: a mode of a partly filled
 /// end cell, of which the start has little, grows unseen below the others for a while.
 const STRIDE: usize = 40;
@@ -80,12 +79,9 @@ where
     pub fn into_critical_step(mut self, forcing: &Forcing<T, D>) -> Option<CriticalStep<T>> {
         if P::FLOWS {
             let geometry = self.eigenvalue_of_unit_density(forcing)?;
-            let steps = (0..self.particles.len()).map(|p| self.coupled(p).critical_step(geometry));
-            return steps
-                .flatten()
-                .min_by(|a, b| a.step.primal().total_cmp(&b.step.primal()));
+            return self.waves().critical_step_of_both(geometry);
         }
-        let speed = self.largest_wave_speed();
+        let speed = self.waves().largest_speed();
         let eigenvalue = self.largest_eigenvalue(forcing, speed)?;
         Some(CriticalStep {
             step: T::lit(2.0) / eigenvalue.sqrt(),
@@ -108,7 +104,7 @@ where
         if P::FLOWS {
             return sample.eigenvalue_of_unit_density(forcing);
         }
-        let speed = sample.largest_wave_speed();
+        let speed = sample.waves().largest_speed();
         Some(sample.largest_eigenvalue(forcing, speed)? / (speed * speed))
     }
 
@@ -181,10 +177,12 @@ where
         probe.prepare();
         probe.sum_solid_masses();
         let rest = at_rest(forcing);
-        let scale = probe.probe_velocity()?;
+        let h = probe.grid.cell_size().min();
+        let scale = h.is_finite().then(|| h * T::lit(PROBE_STRAIN))?;
+        excite(&mut probe.particles.velocity);
         let (mut before, mut eigenvalue) = (T::zero(), T::zero());
         for iteration in 0..MOST_ITERATIONS {
-            probe.normalise(scale)?;
+            normalise(&mut probe.particles.velocity, scale)?;
             eigenvalue = probe.apply(&rest, scale)?;
             if iteration % STRIDE == STRIDE - 1 {
                 if (eigenvalue - before).abs() <= T::lit(TOLERANCE) * eigenvalue {
@@ -196,45 +194,13 @@ where
         (eigenvalue > least).then_some(eigenvalue)
     }
 
-    /// Velocity that strains a cell by [`PROBE_STRAIN`] in one second.
-    fn probe_velocity(&mut self) -> Option<T> {
-        let h = self.grid.cell_size().min();
-        // A fixed sequence of signs and sizes that excites every mode.
-        let mut seed = 1_u32;
-        for v in &mut self.particles.velocity {
-            for component in v.iter_mut() {
-                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                *component = T::lit(f64::from(seed >> 8) / f64::from(1 << 23) - 1.0);
-            }
-        }
-        h.is_finite().then(|| h * T::lit(PROBE_STRAIN))
-    }
-
-    /// Scales the particles' velocities to the root mean square `size`.
-    fn normalise(&mut self, size: T) -> Option<()> {
-        let norm = rms(&self.particles.velocity);
-        if !(norm > T::zero() && norm.is_finite()) {
-            return None;
-        }
-        for v in &mut self.particles.velocity {
-            *v *= size / norm;
-        }
-        Some(())
-    }
-
     /// Replaces the velocities `v` by `G v` and returns `|G v| / |v|`, `|v| = size`.
     fn apply(&mut self, rest: &Forcing<T, D>, size: T) -> Option<T> {
         self.map_solid();
         let walls = Walls::of_solid(&self.face_dofs, rest);
         divide_by_mass(&mut self.dofs, self.mass, &walls, true);
-        let mut rates = vec![SMatrix::zeros(); self.particles.len()];
-        let parallel = rates.len() > PARTICLES && many_threads();
-        each_span(parallel, PARTICLES, &mut rates[..], &|first, rates: &mut [_]| {
-            let mut state = Vec::with_capacity(self.law.numbers());
-            for (p, rate) in (first..).zip(rates) {
-                *rate = self.stress_rate(p, &mut state);
-            }
-        });
+        let space = (&self.basis, &self.grid, self.bins.cells());
+        let rates = stress_rates(space, &self.waves(), &self.dofs.velocity);
         let batched = self.batched();
         let fitted = Fitted {
             basis: &self.basis,
@@ -253,32 +219,6 @@ where
         let eigenvalue = rms(&self.particles.velocity) / size;
         eigenvalue.is_finite().then_some(eigenvalue)
     }
-
-    /// Change of a particle's total stress under the DOF velocities in one second; `state` is room for a
-    /// state.
-    fn stress_rate(&self, p: usize, state: &mut Vec<L::Number>) -> SMatrix<T, D, D> {
-        let particles = &self.particles;
-        let mut gradient = SMatrix::<T, D, D>::zeros();
-        let sites = particles.sites(self.bins.cells());
-        sites.for_each(&self.basis, &self.grid, p, |i, _, grad_phi| {
-            gradient += self.dofs.velocity[i] * grad_phi.transpose();
-        });
-        if P::FLOWS {
-            return symmetric(&gradient);
-        }
-        let mut stress = particles.stress[p];
-        state.clear();
-        state.extend_from_slice(self.law.of(&particles.state, p));
-        self.law.update(&gradient, &mut stress, state);
-        if !P::COUPLED {
-            return stress - particles.stress[p];
-        }
-        let mut data = particles.phase[p];
-        let step = PhaseStep::strain(&gradient, &stress).with_volume(particles.volume[p]);
-        self.phase.update(&step, &mut data);
-        self.phase.total_stress(&stress, &data)
-            - self.phase.total_stress(&particles.stress[p], &particles.phase[p])
-    }
 }
 
 impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
@@ -290,58 +230,12 @@ where
     P: Phase<T, D>,
     X: Transfer<T, D>,
 {
-    /// Largest speed (m/s) of a wave through the solid.
-    fn largest_wave_speed(&self) -> T {
-        let speeds = (0..self.particles.len()).map(|p| self.wave_speed(p));
-        speeds.fold(T::zero(), T::max)
-    }
-
-    /// Speed (m/s) of the fastest wave at particle `p`, of the law and, unless a liquid flows, with what the
-    /// phase adds to its stiffness.
-    pub(super) fn wave_speed(&self, p: usize) -> T {
-        let particles = &self.particles;
-        let density = particles.mass[p] / particles.volume[p];
-        let state = self.law.of(&particles.state, p);
-        let speed = self.law.wave_speed(density, &particles.stress[p], state);
-        if !P::COUPLED || P::FLOWS {
-            return speed;
-        }
-        (speed * speed + self.phase_stiffness(p) / density)
-            .max(T::zero())
-            .sqrt()
-    }
-
-    /// How much a phase that does not flow adds to the modulus (Pa) of a wave along the stiffest axis, by a
-    /// small strain.
-    pub(super) fn phase_stiffness(&self, p: usize) -> T {
-        let (phase, data) = (&self.phase, &self.particles.phase[p]);
-        let (strain, nothing) = (T::lit(PROBE_STRAIN), SMatrix::zeros());
-        let before = phase.total_stress(&nothing, data);
-        let along = (0..D).map(|axis| {
-            let (mut increment, mut strained) = (nothing, *data);
-            increment[(axis, axis)] = strain;
-            let step = PhaseStep::strain(&increment, &self.particles.stress[p]);
-            phase.update(&step.with_volume(self.particles.volume[p]), &mut strained);
-            (phase.total_stress(&nothing, &strained) - before)[(axis, axis)] / strain
-        });
-        along.fold(-T::lit(f64::INFINITY), T::max)
-    }
-
-    /// The material at particle `p`.
-    pub(super) fn coupled(&self, p: usize) -> Coupled<T> {
-        let (particles, phase) = (&self.particles, &self.phase);
-        let (mass, volume) = (particles.mass[p], particles.volume[p]);
-        let density = mass / volume;
-        let speed = self
-            .law
-            .wave_speed(density, &particles.stress[p], self.law.of(&particles.state, p));
-        Coupled {
-            mass: [phase.liquid_mass(volume) / volume, density],
-            drag: phase.porosity() * phase.drag(mass, volume) / volume,
-            liquid_stiffness: phase.liquid_stiffness(),
-            porosity: phase.porosity(),
-            modulus: speed * speed * density,
-            implicit: phase.drag_treatment() == Drag::Implicit,
+    /// The particles with what they are made of.
+    pub(super) fn waves(&self) -> Waves<'_, T, D, L, P> {
+        Waves {
+            law: &self.law,
+            phase: &self.phase,
+            particles: &self.particles,
         }
     }
 }
@@ -364,6 +258,60 @@ pub(super) fn at_rest<T: Scalar, const D: usize>(forcing: &Forcing<T, D>) -> For
         }
     }
     rest
+}
+
+/// Velocities of a fixed sequence of signs and sizes that excites every mode.
+#[inline(never)]
+fn excite<T: Scalar, const D: usize>(velocities: &mut [SVector<T, D>]) {
+    let mut seed = 1_u32;
+    for v in velocities {
+        for component in v.iter_mut() {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            *component = T::lit(f64::from(seed >> 8) / f64::from(1 << 23) - 1.0);
+        }
+    }
+}
+
+/// Scales velocities to the root mean square `size`.
+#[inline(never)]
+fn normalise<T: Scalar, const D: usize>(velocities: &mut [SVector<T, D>], size: T) -> Option<()> {
+    let norm = rms(velocities);
+    if !(norm > T::zero() && norm.is_finite()) {
+        return None;
+    }
+    for v in velocities {
+        *v *= size / norm;
+    }
+    Some(())
+}
+
+/// Change of the particles' total stress under the `velocities` of the DOFs in one second.
+#[inline(never)]
+fn stress_rates<T: Scalar, const D: usize, B, L, P>(
+    space: (&B, &Grid<T, D>, &[Cell<D>]),
+    waves: &Waves<'_, T, D, L, P>,
+    velocities: &[SVector<T, D>],
+) -> Vec<SMatrix<T, D, D>>
+where
+    B: BasisFamily<T, D>,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+{
+    let (basis, grid, cells) = space;
+    let sites = waves.particles.sites(cells);
+    let mut rates = vec![SMatrix::zeros(); cells.len()];
+    let parallel = rates.len() > PARTICLES && many_threads();
+    each_span(parallel, PARTICLES, &mut rates[..], &|first, rates: &mut [_]| {
+        let mut state = Vec::with_capacity(waves.law.numbers());
+        for (p, rate) in (first..).zip(rates) {
+            let mut gradient = SMatrix::<T, D, D>::zeros();
+            sites.for_each(basis, grid, p, |i, _, grad_phi| {
+                gradient += velocities[i] * grad_phi.transpose();
+            });
+            *rate = waves.stress_rate(p, &gradient, &mut state);
+        }
+    });
+    rates
 }
 
 fn rms<T: Scalar, const D: usize>(values: &[SVector<T, D>]) -> T {

@@ -8,6 +8,7 @@ use super::spans::Totals;
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
 use crate::law::LawSweep;
+use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -129,6 +130,7 @@ impl<T: Scalar> Diagnostics<T> {
 
     /// Compares the mapped totals of the solid, and of the liquid where one flows, with those of the
     /// particles.
+    #[inline(never)]
     pub(super) fn record<const D: usize>(
         &mut self,
         totals: &Totals<T, D>,
@@ -179,40 +181,15 @@ where
     /// Kinetic and strain energy of the particles as they are, the liquid's included: the kinetic one half a
     /// step earlier than the strain energy. [`Stepper::step_and_measure`] has both at one time.
     pub fn energy(&self) -> Energy<T> {
-        let particles = &self.particles;
-        let mut kinetic = T::zero();
-        for p in 0..particles.len() {
-            kinetic += particles.velocity[p].norm_squared() * particles.mass[p];
-            if P::FLOWS {
-                let speed = self.phase.liquid(&particles.phase[p]).velocity.norm_squared();
-                kinetic += speed * self.phase.liquid_mass(particles.volume[p]);
-            }
-        }
         Energy {
-            kinetic: kinetic / T::lit(2.0),
+            kinetic: kinetic_energy(&self.phase, &self.particles),
             strain: self.strain_energy(),
         }
     }
 
     /// Strain energy of the particles as they are, what a phase stores included.
     pub(super) fn strain_energy(&self) -> T {
-        let particles = &self.particles;
-        let mut densities = [T::zero(); BLOCK];
-        let (each, mut sum) = (self.law.numbers(), T::zero());
-        for first in (0..particles.len()).step_by(BLOCK) {
-            let end = (first + BLOCK).min(particles.len());
-            let states = &particles.state[first * each..end * each];
-            self.law
-                .energy_densities(&particles.stress[first..end], states, &mut densities);
-            for (p, &solid) in (first..end).zip(&densities) {
-                let mut density = solid;
-                if P::COUPLED {
-                    density += self.phase.energy_density(&particles.phase[p]);
-                }
-                sum += density * particles.volume[p];
-            }
-        }
-        sum
+        strain_energy(&self.law, &self.phase, &self.particles)
     }
 
     /// Copies of the velocities of the particles, and of their liquid.
@@ -226,15 +203,62 @@ where
     }
 
     /// `sum m v . v' / 2` of the velocities before and those now.
-    pub(super) fn kinetic_energy_across(&self, [solid, liquid]: &[Vec<SVector<T, D>>; 2]) -> T {
-        let particles = &self.particles;
-        let mut twice = T::zero();
-        for ((before, now), &mass) in solid.iter().zip(&particles.velocity).zip(&particles.mass) {
-            twice += before.dot(now) * mass;
-        }
-        for ((before, data), &volume) in liquid.iter().zip(&particles.phase).zip(&particles.volume) {
-            twice += before.dot(&self.phase.liquid(data).velocity) * self.phase.liquid_mass(volume);
-        }
-        twice / T::lit(2.0)
+    pub(super) fn kinetic_energy_across(&self, before: &[Vec<SVector<T, D>>; 2]) -> T {
+        kinetic_energy_across(&self.phase, &self.particles, before)
     }
+}
+
+#[inline(never)]
+fn kinetic_energy<T: Scalar, const D: usize, N, P: Phase<T, D>>(
+    phase: &P,
+    particles: &Particles<T, D, N, P::Particle>,
+) -> T {
+    let mut kinetic = T::zero();
+    for p in 0..particles.position.len() {
+        kinetic += particles.velocity[p].norm_squared() * particles.mass[p];
+        if P::FLOWS {
+            let speed = phase.liquid(&particles.phase[p]).velocity.norm_squared();
+            kinetic += speed * phase.liquid_mass(particles.volume[p]);
+        }
+    }
+    kinetic / T::lit(2.0)
+}
+
+#[inline(never)]
+fn strain_energy<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
+    law: &L,
+    phase: &P,
+    particles: &Particles<T, D, L::Number, P::Particle>,
+) -> T {
+    let mut densities = [T::zero(); BLOCK];
+    let (each, mut sum) = (law.numbers(), T::zero());
+    for first in (0..particles.len()).step_by(BLOCK) {
+        let end = (first + BLOCK).min(particles.len());
+        let states = &particles.state[first * each..end * each];
+        law.energy_densities(&particles.stress[first..end], states, &mut densities);
+        for (p, &solid) in (first..end).zip(&densities) {
+            let mut density = solid;
+            if P::COUPLED {
+                density += phase.energy_density(&particles.phase[p]);
+            }
+            sum += density * particles.volume[p];
+        }
+    }
+    sum
+}
+
+#[inline(never)]
+fn kinetic_energy_across<T: Scalar, const D: usize, N, P: Phase<T, D>>(
+    phase: &P,
+    particles: &Particles<T, D, N, P::Particle>,
+    [solid, liquid]: &[Vec<SVector<T, D>>; 2],
+) -> T {
+    let mut twice = T::zero();
+    for ((before, now), &mass) in solid.iter().zip(&particles.velocity).zip(&particles.mass) {
+        twice += before.dot(now) * mass;
+    }
+    for ((before, data), &volume) in liquid.iter().zip(&particles.phase).zip(&particles.volume) {
+        twice += before.dot(&phase.liquid(data).velocity) * phase.liquid_mass(volume);
+    }
+    twice / T::lit(2.0)
 }

@@ -2,15 +2,11 @@
 
 use nalgebra::SVector;
 
-use super::{FaceCondition, Forcing, Stepper};
+use super::{FaceCondition, Forcing};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::grid::{Cell, Face, Grid, Side};
-use crate::law::LawSweep;
-use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::transfer::Transfer;
 
 /// Of each face, in the order of [`Face::all`], the DOFs that a wall holds, and one that has a value there
 /// all the same.
@@ -65,26 +61,20 @@ fn left_out<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     found
 }
 
-impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
-where
-    T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
-    L: LawSweep<T, D>,
-    P: Phase<T, D>,
-    X: Transfer<T, D>,
-{
-    /// Refuses walls that the basis would let slip.
-    pub(super) fn walls_can_be_held(&self, forcing: &Forcing<T, D>) -> Result<(), StepError> {
-        for (face, left_out) in Face::all::<D>().zip(&self.left_out) {
-            let wall = match forcing.face(face) {
-                FaceCondition::Held { .. } | FaceCondition::Frictional { .. } => true,
-                FaceCondition::Free | FaceCondition::Traction(_) => false,
-            };
-            if let (true, &Some(dof)) = (wall, left_out) {
-                return Err(StepError::WallNotHeld { face, dof });
-            }
+/// Refuses walls that the basis would let slip, given a DOF for each face where it would.
+#[inline(never)]
+pub(super) fn walls_can_be_held<T: Scalar, const D: usize>(
+    forcing: &Forcing<T, D>,
+    left_out: &[Option<usize>],
+) -> Result<(), StepError> {
+    for (face, left_out) in Face::all::<D>().zip(left_out) {
+        let wall = match forcing.face(face) {
+            FaceCondition::Held { .. } | FaceCondition::Frictional { .. } => true,
+            FaceCondition::Free | FaceCondition::Traction(_) => false,
+        };
+        if let (true, &Some(dof)) = (wall, left_out) {
+            return Err(StepError::WallNotHeld { face, dof });
         }
-        Ok(())
     }
+    Ok(())
 }

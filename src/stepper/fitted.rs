@@ -18,7 +18,9 @@ use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Values};
 use crate::scalar::Scalar;
 use crate::simd::LANES;
-use crate::transfer::{self, Fits, Integrand, MassesAndMomenta, Parts, Stress, Sum, Sweep, at_fixed_points};
+use crate::transfer::{
+    self, Fits, Integrand, MassesAndMomenta, Parts, Stress, Sum, Sweep, at_fixed_points, for_values,
+};
 
 /// What is fitted, and in which functions it ends up.
 pub(super) struct Fitted<'a, 'c, T: Scalar, const D: usize, B, R> {
@@ -30,6 +32,20 @@ pub(super) struct Fitted<'a, 'c, T: Scalar, const D: usize, B, R> {
     pub(super) spans: &'a mut Spans<T, D>,
     /// Whether four cells are fitted at a time.
     pub(super) batched: bool,
+}
+
+impl<'a, 'c, T: Scalar, const D: usize, B, R> Fitted<'a, 'c, T, D, B, R> {
+    /// The same in the functions of another basis of the same DOFs.
+    fn in_functions_of<M>(self, basis: &'a M) -> Fitted<'a, 'c, T, D, M, R> {
+        Fitted {
+            basis,
+            reconstruction: self.reconstruction,
+            cloud: self.cloud,
+            domains: self.domains,
+            spans: self.spans,
+            batched: self.batched,
+        }
+    }
 }
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> Fitted<'_, '_, T, D, B, R> {
@@ -55,7 +71,10 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
     ) where
         MassesAndMomenta<Q>: Integrand<T, D, S, C, 0, 0, Field = Q>,
     {
-        self.integrate::<MassesAndMomenta<Q>, S, C, 0>(&densities, targets);
+        for_values!(B, self.basis, |basis| {
+            let fitted = self.in_functions_of(basis);
+            fitted.integrate::<MassesAndMomenta<Q>, S, C, 0>(&densities, targets);
+        });
     }
 
     fn integrate<I, const S: usize, const C: usize, const G: usize>(
@@ -138,22 +157,27 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
     ) where
         MassesAndMomenta<Q>: Integrand<T, D, 0, C, 0, C, Field = Q>,
     {
-        match D {
-            1 => self.bands(&densities, dofs),
-            _ => self.lattices(&densities, dofs),
-        }
+        // Of the matrix, which is as wide as the gradients reach.
+        let half_band = self.basis.half_band(self.cloud.grid);
+        for_values!(B, self.basis, |basis| {
+            let fitted = self.in_functions_of(basis);
+            match D {
+                1 => fitted.bands(half_band, &densities, dofs),
+                _ => fitted.lattices(&densities, dofs),
+            }
+        });
     }
 
     /// The same along one axis.
     fn bands<Q: Field<T>, const C: usize>(
         self,
+        half_band: usize,
         densities: &(impl Values<T, Q> + Copy + Sync),
         dofs: [&mut Dofs<T, D>; C],
     ) where
         MassesAndMomenta<Q>: Integrand<T, D, 0, C, 0, C, Field = Q>,
     {
         let (basis, cloud) = (self.basis, &self.cloud);
-        let half_band = basis.half_band(cloud.grid);
         let width = half_band + 1;
         let amount = |p: usize| amount_of(densities.at(p), true, cloud.volumes[p]);
         let mut momenta = [const { None }; C];
@@ -227,15 +251,13 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                     cells,
                     fresh: is_fresh,
                 };
-                at_fixed_points!(B, basis, |basis| {
-                    Sweep::new(basis, cloud.grid).integrate::<_, _, MassesAndMomenta<Q>, 0, C, 0, C>(
-                        &fits,
-                        kept.values,
-                        densities,
-                        &mut sink,
-                        &mut matrix,
-                    );
-                });
+                Sweep::new(basis, cloud.grid).integrate::<_, _, MassesAndMomenta<Q>, 0, C, 0, C>(
+                    &fits,
+                    kept.values,
+                    densities,
+                    &mut sink,
+                    &mut matrix,
+                );
                 return;
             }
             let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, sink, matrix);
@@ -288,15 +310,13 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                 fresh: self.spans.fresh,
             };
             let kept = room::<T, D, R>(&mut self.spans.kept, cloud.bins.occupied().len(), true);
-            at_fixed_points!(B, basis, |basis| {
-                Sweep::new(basis, cloud.grid).integrate::<_, _, MassesAndMomenta<Q>, 0, C, 0, C>(
-                    &fits,
-                    kept.values,
-                    densities,
-                    &mut sink,
-                    &mut matrix,
-                );
-            });
+            Sweep::new(basis, cloud.grid).integrate::<_, _, MassesAndMomenta<Q>, 0, C, 0, C>(
+                &fits,
+                kept.values,
+                densities,
+                &mut sink,
+                &mut matrix,
+            );
             return;
         }
         let amount = |p: usize| amount_of(densities.at(p), true, cloud.volumes[p]);

@@ -1,8 +1,10 @@
 //! What the law knows of the particles besides their stress.
 
 use super::Stepper;
+use super::order::Order;
 use crate::basis::BasisFamily;
 use crate::law::LawSweep;
+use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -30,30 +32,39 @@ where
 {
     /// What the law knows of the particles besides their stress.
     pub fn material_fields(&self) -> MaterialFields {
-        let (law, particles) = (&self.law, &self.particles);
-        MaterialFields {
-            off_plane_stress: self
-                .in_first_order(|p| law.off_plane_stress(&particles.stress[p], law.of(&particles.state, p))),
-            plastic_strain: self.in_first_order(|p| law.plastic_strain(law.of(&particles.state, p))),
-        }
+        known_to(&self.law, &self.particles, &self.order)
     }
+}
 
-    /// The values of all particles, in the order in which they were given; none if one of them has none.
-    fn in_first_order(&self, value: impl Fn(usize) -> Option<T>) -> Vec<f64> {
-        let count = self.particles.len();
-        // A law that does not know the first one knows none: most arrays are never made.
-        if count == 0 || value(0).is_none() {
-            return Vec::new();
-        }
-        let mut values = vec![f64::NAN; count];
-        for p in 0..count {
-            let Some(value) = value(p) else {
-                return Vec::new();
-            };
-            if let Some(place) = values.get_mut(self.order.number(p)) {
-                *place = value.primal();
-            }
-        }
-        values
+#[inline(never)]
+fn known_to<T: Scalar, const D: usize, L: LawSweep<T, D>, Q>(
+    law: &L,
+    particles: &Particles<T, D, L::Number, Q>,
+    order: &Order,
+) -> MaterialFields {
+    let count = particles.position.len();
+    MaterialFields {
+        off_plane_stress: in_first_order(count, order, &|p| {
+            law.off_plane_stress(&particles.stress[p], law.of(&particles.state, p))
+        }),
+        plastic_strain: in_first_order(count, order, &|p| law.plastic_strain(law.of(&particles.state, p))),
     }
+}
+
+/// The values of all particles, in the order in which they were given; none if one of them has none.
+fn in_first_order<T: Scalar>(count: usize, order: &Order, value: &dyn Fn(usize) -> Option<T>) -> Vec<f64> {
+    // A law that does not know the first one knows none: most arrays are never made.
+    if count == 0 || value(0).is_none() {
+        return Vec::new();
+    }
+    let mut values = vec![f64::NAN; count];
+    for p in 0..count {
+        let Some(value) = value(p) else {
+            return Vec::new();
+        };
+        if let Some(place) = values.get_mut(order.number(p)) {
+            *place = value.primal();
+        }
+    }
+    values
 }

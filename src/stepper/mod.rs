@@ -54,6 +54,7 @@ mod spans;
 mod step;
 mod sums;
 mod velocity;
+mod waves;
 mod window;
 
 pub use critical::{CriticalStep, Mechanism};
@@ -175,9 +176,7 @@ where
             mut memory,
             surface,
         } = setup;
-        particles.validate_with(law.numbers())?;
-        phase.validate()?;
-        refuse_unknown_stress(&law, &particles)?;
+        check_material(&law, &phase, &particles)?;
         domain::lay::<T, D, B, _, _>(&grid, &mut particles);
         domain::validate::<T, D, B, _, _>(&grid, &particles, |p| p)?;
         if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {
@@ -199,40 +198,29 @@ where
         if R::PARTICLE_MATRIX && D > 1 {
             polynomial::refuse_bends_within_cells(&basis, &grid)?;
         }
-        for point in &surface {
-            point.validate::<D>(particles.len())?;
-        }
-        let bins = Bins::without_lists(&grid, &particles.position).map_err(|Outside(particle)| {
-            SetupError::Outside {
-                particle,
-                position: values(&particles.position[particle]),
-            }
-        })?;
-        for (cell, x) in bins.cells().iter().zip(&mut particles.position) {
-            grid.nudge_off_edges(cell, x);
-        }
+        let bins = find_cells(&grid, &surface, &mut particles.position)?;
         let grid = match B::FOLLOWS_WINDOW {
             true => window::lay(grid, bins.cells()),
             false => grid,
         };
-        let order = Order::new(&grid, bins.cells());
-        let mass_model = MassModel::of::<T, D, R>(velocity_mass);
-        let surface_count = surface.len();
-        let crossed_count = if R::RELAXES { grid.cell_count() } else { 0 };
-        let relaxed_count = if R::RELAXES && law.remembers() {
-            particles.len()
-        } else {
-            0
-        };
-        let seal = {
-            let points = if P::FLOWS { surface_count } else { 0 };
-            let along = basis.degree() + 1;
-            let beside = along.pow(D as u32 - 1);
-            liquid::Seal::new(points, along * beside, beside)
-        };
+        let along = basis.degree() + 1;
         let places = from_grid::dof_places::<T, D, B, X>(&basis, &grid)?;
-        let spans = Spans::new(particles.len());
-        let mass = particles.mass.iter().fold(T::zero(), |sum, &m| sum + m);
+        let parts = Parts::new(
+            &grid,
+            bins,
+            &particles.mass,
+            Counts {
+                surface: surface.len(),
+                crossed: if R::RELAXES { grid.cell_count() } else { 0 },
+                relaxed: match R::RELAXES && law.remembers() {
+                    true => particles.len(),
+                    false => 0,
+                },
+                functions: [along, along.pow(D as u32 - 1)],
+                flows: P::FLOWS,
+                pairs: R::PARTICLE_MATRIX,
+            },
+        );
         let mut stepper = Self {
             grid,
             basis,
@@ -243,30 +231,30 @@ where
             particles,
             memory,
             surface,
-            bins,
-            order,
-            cuts: Vec::with_capacity(surface_count),
-            dofs: Dofs::none(),
-            liquid: Dofs::none(),
+            bins: parts.bins,
+            order: parts.order,
+            cuts: parts.cuts,
+            dofs: parts.dofs,
+            liquid: parts.liquid,
             drag: Vec::new(),
-            joint: liquid::Joint::none(),
-            seal,
+            joint: parts.joint,
+            seal: parts.seal,
             places,
-            spans,
+            spans: parts.spans,
             strayed: false,
-            crossed: Vec::with_capacity(crossed_count),
-            relaxed: vec![SMatrix::zeros(); relaxed_count],
-            balance: balance::Balance::none(),
-            contact: contact::WallContact::none(),
-            pairs: Pairs::new(R::PARTICLE_MATRIX),
+            crossed: parts.crossed,
+            relaxed: parts.relaxed,
+            balance: parts.balance,
+            contact: parts.contact,
+            pairs: parts.pairs,
             body_forces: Vec::new(),
             face_dofs: Vec::new(),
             left_out: Vec::new(),
             velocity_mass,
-            mass: mass_model,
+            mass: MassModel::of::<T, D, R>(velocity_mass),
             time: T::zero(),
             steps: 0,
-            diagnostics: Diagnostics::new(mass, P::FLOWS),
+            diagnostics: parts.diagnostics,
         };
         if P::FLOWS {
             stepper.reconstruction.configure_for_saturated();
@@ -377,7 +365,7 @@ where
         }
         forcing.suits_phase(P::FLOWS)?;
         from_grid::refuse_walls_that_rub::<T, D, X>(forcing)?;
-        self.walls_can_be_held(forcing)?;
+        faces::walls_can_be_held(forcing, &self.left_out)?;
         let mut outcome = Ok(Energy::none());
         within_pool(self.is_worth_sending(), &mut || {
             outcome = self.step_here([kick, dt], forcing, measure);
@@ -392,6 +380,7 @@ where
     }
 
     /// Takes in where the particles are.
+    #[inline(never)]
     fn prepare(&mut self) {
         self.spans.fresh = false;
         if self.strayed {
@@ -596,6 +585,97 @@ where
     pub fn bytes_per_particle(&self) -> f64 {
         self.bytes() as f64 / self.particles.len() as f64
     }
+}
+
+/// Of how many things a stepper keeps something.
+struct Counts {
+    surface: usize,
+    /// Cells whose Courant numbers are kept.
+    crossed: usize,
+    /// Particles whose relaxed stress is kept.
+    relaxed: usize,
+    /// Functions of a cell along an axis, and on a side of it.
+    functions: [usize; 2],
+    /// Whether a liquid flows.
+    flows: bool,
+    /// Whether particles are summed in pairs of DOFs.
+    pairs: bool,
+}
+
+/// What a stepper keeps besides its setup, before there are DOFs. Made in a function of its own: what frees
+/// the fields that are there already where the next one fails is else compiled for every stepper.
+struct Parts<T: Scalar, const D: usize> {
+    bins: Bins<D>,
+    order: Order,
+    cuts: Vec<Cut<T>>,
+    dofs: Dofs<T, D>,
+    liquid: Dofs<T, D>,
+    joint: liquid::Joint<T, D>,
+    seal: liquid::Seal<T>,
+    spans: Spans<T, D>,
+    crossed: Vec<CourantNumbers<T>>,
+    relaxed: Vec<SMatrix<T, D, D>>,
+    balance: balance::Balance<T, D>,
+    contact: contact::WallContact<T, D>,
+    pairs: Pairs<T, D>,
+    diagnostics: Diagnostics<T>,
+}
+
+impl<T: Scalar, const D: usize> Parts<T, D> {
+    #[inline(never)]
+    fn new(grid: &Grid<T, D>, bins: Bins<D>, masses: &[T], counts: Counts) -> Self {
+        let mass = masses.iter().fold(T::zero(), |sum, &m| sum + m);
+        let sealed = if counts.flows { counts.surface } else { 0 };
+        let [along, beside] = counts.functions;
+        Self {
+            order: Order::new(grid, bins.cells()),
+            bins,
+            cuts: Vec::with_capacity(counts.surface),
+            dofs: Dofs::none(),
+            liquid: Dofs::none(),
+            joint: liquid::Joint::none(),
+            seal: liquid::Seal::new(sealed, along * beside, beside),
+            spans: Spans::new(masses.len()),
+            crossed: Vec::with_capacity(counts.crossed),
+            relaxed: vec![SMatrix::zeros(); counts.relaxed],
+            balance: balance::Balance::none(),
+            contact: contact::WallContact::none(),
+            pairs: Pairs::new(counts.pairs),
+            diagnostics: Diagnostics::new(mass, counts.flows),
+        }
+    }
+}
+
+/// Checks particles and what they are made of.
+#[inline(never)]
+fn check_material<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
+    law: &L,
+    phase: &P,
+    particles: &Particles<T, D, L::Number, P::Particle>,
+) -> Result<(), SetupError> {
+    particles.validate_with(law.numbers())?;
+    phase.validate()?;
+    refuse_unknown_stress(law, particles)
+}
+
+/// Checks where surfaces and particles are, and moves the latter off the edges of their cells.
+#[inline(never)]
+fn find_cells<T: Scalar, const D: usize>(
+    grid: &Grid<T, D>,
+    surface: &[SurfacePoint<T>],
+    positions: &mut [SVector<T, D>],
+) -> Result<Bins<D>, SetupError> {
+    for point in surface {
+        point.validate::<D>(positions.len())?;
+    }
+    let bins = Bins::without_lists(grid, positions).map_err(|Outside(particle)| SetupError::Outside {
+        particle,
+        position: values(&positions[particle]),
+    })?;
+    for (cell, x) in bins.cells().iter().zip(positions) {
+        grid.nudge_off_edges(cell, x);
+    }
+    Ok(bins)
 }
 
 /// Refuses a particle whose stress has no meaning to the law.

@@ -117,6 +117,11 @@ impl Order {
         self.numbers().map_or(place, |numbers| numbers[place] as usize)
     }
 
+    /// The same, taken out of an order that is of no further use.
+    pub(super) fn take_numbers(&mut self) -> Option<Vec<u32>> {
+        self.moved.then_some(std::mem::take(&mut self.numbers))
+    }
+
     /// The numbers, to be used up.
     pub(super) fn into_numbers(self) -> Option<Vec<u32>> {
         self.moved.then_some(self.numbers)

@@ -154,7 +154,7 @@ where
         if !P::FLOWS {
             for (speed, &p) in speeds.iter_mut().zip(which) {
                 let p = p as usize;
-                let added = self.phase_stiffness(p) * particles.volume[p] / particles.mass[p];
+                let added = self.waves().phase_stiffness(p) * particles.volume[p] / particles.mass[p];
                 *speed = (*speed * *speed + added).max(T::zero()).sqrt();
             }
             return;

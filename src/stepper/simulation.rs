@@ -4,6 +4,7 @@ use std::io::{self, Read, Write};
 
 use nalgebra::SVector;
 
+use super::order::Order;
 use super::{
     Conservation, CriticalStep, Diagnostics, Energy, FaceCondition, Forcing, MaterialFields, PoreCondition,
     Stepper,
@@ -143,33 +144,22 @@ where
     }
 
     fn particles(&self) -> Particles<f64, D> {
-        let mut particles = self.particles.cast();
-        particles.put_back(self.numbers().map(<[u32]>::to_vec));
-        particles
+        copied(&self.particles, &self.order)
     }
 
-    fn into_particles(self: Box<Self>) -> (Particles<f64, D>, Vec<PoreLiquid<f64, D>>) {
+    fn into_particles(mut self: Box<Self>) -> (Particles<f64, D>, Vec<PoreLiquid<f64, D>>) {
         let liquid = Simulation::liquid(self.as_ref());
-        // The DOFs' arrays and the reconstruction's are freed before the particles may be copied.
-        let Self { particles, order, .. } = *self;
-        let mut particles = particles.into_cast();
-        particles.put_back(order.into_numbers());
-        (particles, liquid)
+        let none = Particles::from_points(std::iter::empty(), T::zero());
+        let particles = std::mem::replace(&mut self.particles, none);
+        let numbers = self.order.take_numbers();
+        // The DOFs' arrays and the reconstruction's are freed before the particles may be copied. By the
+        // stepper as a whole: to free it field by field would be compiled for every stepper once more.
+        drop(self);
+        (in_first_order(particles, numbers), liquid)
     }
 
     fn liquid(&self) -> Vec<PoreLiquid<f64, D>> {
-        if !P::FLOWS {
-            return Vec::new();
-        }
-        let mut liquid = vec![PoreLiquid::default(); self.particles.len()];
-        for (place, data) in self.particles.phase.iter().enumerate() {
-            let PoreLiquid { velocity, pressure } = self.phase.liquid(data);
-            liquid[self.order.number(place)] = PoreLiquid {
-                velocity: velocity.map(T::primal),
-                pressure: pressure.primal(),
-            };
-        }
-        liquid
+        liquid_of(&self.phase, &self.particles.phase, &self.order)
     }
 
     fn material_fields(&self) -> MaterialFields {
@@ -248,6 +238,47 @@ where
     fn bytes_per_particle(&self) -> f64 {
         self.bytes_per_particle()
     }
+}
+
+/// Particles in `f64`, in the order of their `numbers`.
+#[inline(never)]
+fn in_first_order<T: Scalar, const D: usize, S, Q>(
+    particles: Particles<T, D, S, Q>,
+    numbers: Option<Vec<u32>>,
+) -> Particles<f64, D> {
+    let mut particles = particles.into_cast();
+    particles.put_back(numbers);
+    particles
+}
+
+/// The same of a copy.
+#[inline(never)]
+fn copied<T: Scalar, const D: usize, S: Clone, Q: Clone>(
+    particles: &Particles<T, D, S, Q>,
+    order: &Order,
+) -> Particles<f64, D> {
+    in_first_order(particles.clone(), order.numbers().map(<[u32]>::to_vec))
+}
+
+/// The liquid of every particle, in the order in which they were given.
+#[inline(never)]
+fn liquid_of<T: Scalar, const D: usize, P: Phase<T, D>>(
+    phase: &P,
+    data: &[P::Particle],
+    order: &Order,
+) -> Vec<PoreLiquid<f64, D>> {
+    if !P::FLOWS {
+        return Vec::new();
+    }
+    let mut liquid = vec![PoreLiquid::default(); data.len()];
+    for (place, data) in data.iter().enumerate() {
+        let PoreLiquid { velocity, pressure } = phase.liquid(data);
+        liquid[order.number(place)] = PoreLiquid {
+            velocity: velocity.map(T::primal),
+            pressure: pressure.primal(),
+        };
+    }
+    liquid
 }
 
 fn cast_energy<T: Scalar>(energy: &Energy<T>) -> Energy<f64> {

@@ -12,8 +12,8 @@ use super::spans::{Spans, Store, share};
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
 use crate::parallel::{Maybe, SpanWindow, Windows, add_up, each_span};
-use crate::particles::{Bins, Particles};
-use crate::phase::Phase;
+use crate::particles::{Bins, Particles, Sites};
+use crate::phase::{OnePhase, Phase};
 use crate::scalar::Scalar;
 use crate::simd::{Packs, each, in_lanes};
 use crate::transfer::{Contribution, Group, Parts, Sum, for_values, p2g};
@@ -144,7 +144,24 @@ impl<T: Scalar, const D: usize, P: Phase<T, D>> Clone for Amounts<'_, T, D, P> {
 
 impl<T: Scalar, const D: usize, P: Phase<T, D>> Copy for Amounts<'_, T, D, P> {}
 
-impl<T: Scalar, const D: usize, P: Phase<T, D>> Amounts<'_, T, D, P> {
+/// As many as anybody asks for; they take no memory.
+const NOTHING: &[()] = &[(); usize::MAX];
+
+impl<'a, T: Scalar, const D: usize, P: Phase<T, D>> Amounts<'a, T, D, P> {
+    /// Those of a solid without pores.
+    fn of_solid(self) -> Amounts<'a, T, D, OnePhase> {
+        Amounts {
+            masses: self.masses,
+            volumes: self.volumes,
+            velocities: self.velocities,
+            stresses: self.stresses,
+            data: &NOTHING[..self.data.len()],
+            phase: &OnePhase,
+            liquid_masses: None,
+            even: self.even,
+        }
+    }
+
     /// What the balance of the whole feels of a particle's stress; with a liquid that flows less the even
     /// load.
     #[inline(always)]
@@ -380,11 +397,58 @@ impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usi
 }
 
 /// Sums over the particles, in as many spans as threads may share.
-#[inline(never)]
+///
+/// Compiled for as few types as there are sweeps: mass and momentum of the solid are the same whatever fills
+/// its pores, and values are those of linear functions for all bases that have these.
 pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C: usize, const G: usize>(
     (basis, grid, bins): (&B, &Grid<T, D>, &Bins<D>),
     particles: &Particles<T, D, N, P::Particle>,
     (phase, even, liquid_masses): (&P, UniformLoad<T>, Option<&[T]>),
+    spans: &mut Spans<T, D>,
+    targets: Targets<'_, T, D, S, C, G>,
+) where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    P: Phase<T, D>,
+{
+    let sites = particles.sites(bins.cells());
+    let amounts = Amounts {
+        masses: &particles.mass,
+        volumes: &particles.volume,
+        velocities: &particles.velocity,
+        stresses: &particles.stress,
+        data: &particles.phase,
+        phase,
+        liquid_masses,
+        even,
+    };
+    if const { G > 0 } {
+        sum_amounts((basis, grid), sites, amounts, spans, targets);
+    } else if const { S <= 1 && C <= 1 } {
+        let solid = amounts.of_solid();
+        for_values!(B, basis, |basis| sum_amounts(
+            (basis, grid),
+            sites,
+            solid,
+            spans,
+            targets
+        ));
+    } else {
+        for_values!(B, basis, |basis| sum_amounts(
+            (basis, grid),
+            sites,
+            amounts,
+            spans,
+            targets
+        ));
+    }
+}
+
+#[inline(never)]
+fn sum_amounts<T, const D: usize, B, P, const S: usize, const C: usize, const G: usize>(
+    (basis, grid): (&B, &Grid<T, D>),
+    sites: Sites<'_, T, D>,
+    amounts: Amounts<'_, T, D, P>,
     spans: &mut Spans<T, D>,
     mut targets: Targets<'_, T, D, S, C, G>,
 ) where
@@ -398,17 +462,27 @@ pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C:
         store,
         ..
     } = spans;
-    let (span, parallel) = share::<D>(spans, particles.position.len(), lengths[0]);
+    let Amounts {
+        masses,
+        volumes,
+        velocities,
+        stresses,
+        data,
+        phase,
+        liquid_masses,
+        even,
+    } = amounts;
+    let (span, parallel) = share::<D>(spans, masses.len(), lengths[0]);
     let work = (
-        particles.sites(bins.cells()),
-        (&particles.mass[..], &particles.volume[..]),
-        (&particles.velocity[..], &particles.stress[..]),
-        (&particles.phase[..], Maybe(liquid_masses)),
+        sites,
+        (masses, volumes),
+        (velocities, stresses),
+        (data, Maybe(liquid_masses)),
         store.windows(spans, &mut targets),
     );
     each_span(parallel, span, work, &|_,
                                       (
-        places,
+        sites,
         (masses, volumes),
         (velocities, stresses),
         (data, liquid),
@@ -425,17 +499,7 @@ pub(super) fn sum_particles<T, const D: usize, B, N, P, const S: usize, const C:
             liquid_masses: liquid.0,
             even,
         };
-        if const { G > 0 } {
-            p2g(basis, grid, places, amounts, move |dof, sum| sums.add(dof, sum));
-        } else {
-            for_values!(B, basis, |basis| p2g(
-                basis,
-                grid,
-                places,
-                amounts,
-                move |dof, sum| sums.add(dof, sum)
-            ));
-        }
+        p2g(basis, grid, sites, amounts, move |dof, sum| sums.add(dof, sum));
     });
     store.add_up(spans, &mut targets);
 }

@@ -102,7 +102,7 @@ where
         R: Reconstruction<T, D> + Clone + Send + 'static,
     {
         match self.liquid.take() {
-            None => self.of_phase(basis, reconstruction, OnePhase, |_| ()),
+            None => self.of_phase(basis, reconstruction, OnePhase, nothing),
             // Known at compile time: no stepper is built for what scenes refuse.
             Some(_) if const { one_phase_only::<T, D, R>() } => Err(SetupError::OnePhaseOnly.into()),
             // Two phases in the plane are verified with laws that remember nothing.
@@ -129,7 +129,7 @@ impl<T, const D: usize> Parts<T, D> {
         basis: B,
         mut reconstruction: R,
         phase: P,
-        data: impl Fn(PoreLiquid<f64, D>) -> P::Particle,
+        data: fn(PoreLiquid<f64, D>) -> P::Particle,
     ) -> Built<D>
     where
         T: Scalar + Record<T> + Default,
@@ -140,23 +140,43 @@ impl<T, const D: usize> Parts<T, D> {
         P::Particle: Record<T>,
     {
         reconstruction.lend_virtual_points(self.virtual_points);
-        let mut particles = self.particles.into_cast::<T, (), P::Particle>();
-        if P::FLOWS {
-            particles.phase = self.pores.into_iter().map(data).collect();
-        }
-        let states = self.law.at_rest(particles.len());
-        let mut particles = particles.with_states(states);
-        if self.under_stress {
-            particles.start_under_stress(&self.law, |_, _| None)?;
-        }
-        let stepper = Stepper::new(
-            Setup::new(self.grid, basis, reconstruction, self.law, phase, particles)
-                .with_velocity_mass(self.velocity_mass)
-                .with_surface(self.surface),
-        )?;
+        let pores = P::FLOWS.then_some(self.pores);
+        let particles = made_of(self.particles, (pores, data), &self.law, self.under_stress)?;
+        let setup = Setup::new(self.grid, basis, reconstruction, self.law, phase, particles);
+        let setup = setup
+            .with_velocity_mass(self.velocity_mass)
+            .with_surface(self.surface);
+        let stepper = Stepper::new(setup)?;
         Ok(Box::new(stepper))
     }
 }
+
+/// The particles with their liquid, if it flows, and their states.
+#[inline(never)]
+fn made_of<T, const D: usize, Q>(
+    particles: Particles<f64, D>,
+    (pores, data): (Option<Vec<PoreLiquid<f64, D>>>, fn(PoreLiquid<f64, D>) -> Q),
+    law: &AnyLaw<T, D>,
+    under_stress: bool,
+) -> Result<Particles<T, D, T, Q>, SetupError>
+where
+    T: Scalar + Record<T> + Default,
+    AnyLaw<T, D>: LawSweep<T, D, Number = T>,
+    Q: Copy + Default,
+{
+    let mut particles = particles.into_cast::<T, (), Q>();
+    if let Some(pores) = pores {
+        particles.phase = pores.into_iter().map(data).collect();
+    }
+    let states = law.at_rest(particles.len());
+    let mut particles = particles.with_states(states);
+    if under_stress {
+        particles.start_under_stress(law, |_, _| None)?;
+    }
+    Ok(particles)
+}
+
+fn nothing<const D: usize>(_: PoreLiquid<f64, D>) {}
 
 fn cast_liquid<T: Scalar, const D: usize>(liquid: PoreLiquid<f64, D>) -> PoreLiquid<T, D> {
     PoreLiquid {

@@ -26,11 +26,13 @@ use std::io::{self, Read, Write};
 
 use nalgebra::SVector;
 
-use super::{Conservation, Diagnostics, Stepper};
+use super::balance::Balance;
+use super::{Conservation, Diagnostics, Stepper, SurfacePoint};
 use crate::basis::BasisFamily;
 use crate::error::RestoreError;
-use crate::grid::Window;
+use crate::grid::{Grid, Window};
 use crate::law::LawSweep;
+use crate::particles::Bins;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::record::Record;
@@ -57,15 +59,13 @@ where
     /// Those of `out`, and [`io::ErrorKind::Unsupported`] for scalars other than `f64` and `f32`.
     pub fn save(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut out = Out::new::<T>(out)?;
-        for (_, value) in self.shape() {
-            out.count(value)?;
-        }
-        self.save_window(&mut out)?;
+        self.shape().into_iter().try_for_each(|value| out.count(value))?;
+        save_window(&self.grid, &mut out)?;
+        out.flag(self.strayed)?;
         out.numbers(&[self.time])?;
         out.count(self.steps)?;
         self.diagnostics.save(&mut out)?;
-        out.flag(self.balance.momentum.is_some())?;
-        out.numbers(self.balance.momentum.unwrap_or_else(SVector::zeros).as_slice())?;
+        self.balance.save(&mut out)?;
         self.particles.save(&mut out)?;
         out.records(&self.memory)?;
         for point in &self.surface {
@@ -84,24 +84,19 @@ where
     /// neither the old nor the new one: such a stepper is of no further use.
     pub fn restore(&mut self, from: &mut dyn Read) -> Result<(), RestoreError> {
         let mut from = In::new::<T>(from)?;
-        for (what, expected) in self.shape() {
-            from.expect(what, expected)?;
-        }
-        self.restore_window(&mut from)?;
+        restore_shape(&mut from, self.shape())?;
+        let window = read_window(&mut from)?;
+        let strayed = from.flag()?;
+        self.take_window(window)?;
+        self.strayed = strayed;
         from.numbers(std::slice::from_mut(&mut self.time))?;
         self.steps = from.count()?;
         self.diagnostics.restore(&mut from)?;
-        let known = from.flag()?;
-        let mut momentum = SVector::<T, D>::zeros();
-        from.numbers(momentum.as_mut_slice())?;
-        self.balance.momentum = known.then_some(momentum);
+        self.balance.restore(&mut from)?;
         self.particles.restore(&mut from, self.law.numbers())?;
         from.records("what the transfer remembers of particle", &mut self.memory)?;
-        let count = self.particles.len();
-        for (index, point) in self.surface.iter_mut().enumerate() {
-            point.particle = from.count_below(count, "the particle of surface", index)?;
-        }
-        self.restore_cells(&mut from)?;
+        restore_surface(&mut self.surface, &mut from, self.particles.len())?;
+        restore_cells(&mut self.bins, &mut from, &self.grid, self.strayed)?;
         self.order.load(&mut from)?;
         // Windows overlap, and a matrix has so many numbers for each DOF.
         let width = 1 + self.basis.half_band(&self.grid);
@@ -109,59 +104,105 @@ where
         self.spans.restore(&mut from, (&self.grid, &self.bins), most)
     }
 
-    /// What two steppers must have in common, with names.
-    fn shape(&self) -> [(&'static str, usize); 5] {
-        [
-            ("axes", D),
-            ("bytes to a number", size_of::<T>()),
-            ("cells", self.grid.cells().iter().product()),
-            ("particles", self.particles.len()),
-            ("surfaces", self.surface.len()),
-        ]
+    /// What two steppers must have in common.
+    fn shape(&self) -> [usize; 5] {
+        let cells = self.grid.cells().iter().product();
+        [D, size_of::<T>(), cells, self.particles.len(), self.surface.len()]
     }
 
-    fn save_window(&self, out: &mut Out<'_>) -> io::Result<()> {
-        let window = self.grid.window();
-        out.indices(&window.first())?;
-        for count in window.shape() {
-            out.count(count)?;
+    /// Takes over the window of cells that was read.
+    fn take_window(&mut self, window: Window<D>) -> Result<(), RestoreError> {
+        if window == *self.grid.window() {
+            return Ok(());
         }
-        out.flag(self.strayed)
-    }
-
-    fn restore_window(&mut self, from: &mut In<'_>) -> Result<(), RestoreError> {
-        let (mut first, mut shape) = ([0; D], [0; D]);
-        from.indices(&mut first)?;
-        for count in &mut shape {
-            *count = from.count()?;
+        self.grid = self.grid.clone().with_window(window);
+        let refused = !B::FOLLOWS_WINDOW || *self.grid.window() != window || window.shape().contains(&0);
+        if refused {
+            let what = "the window of cells, axis";
+            return Err(RestoreError::Invalid { what, index: 0 });
         }
-        let strayed = from.flag()?;
-        let window = Window::new(first, shape);
-        let there = *self.grid.window();
-        if window != there {
-            self.grid = self.grid.clone().with_window(window);
-            let refused = !B::FOLLOWS_WINDOW || *self.grid.window() != window || shape.contains(&0);
-            if refused {
-                let what = "the window of cells, axis";
-                return Err(RestoreError::Invalid { what, index: 0 });
-            }
-            self.follow_window();
-        }
-        self.strayed = strayed;
+        self.follow_window();
         Ok(())
     }
+}
 
-    fn restore_cells(&mut self, from: &mut In<'_>) -> Result<(), RestoreError> {
-        let (counts, strayed) = (self.grid.cells(), self.strayed);
-        for (index, cell) in self.bins.cells_mut().iter_mut().enumerate() {
-            from.indices(cell)?;
-            let outside = cell.iter().zip(counts).any(|(&c, count)| c as usize >= count);
-            if outside || !strayed && !self.grid.has_numbers(cell, 0) {
-                let what = "the cell of particle";
-                return Err(RestoreError::Invalid { what, index });
-            }
+/// Names of what two steppers must have in common.
+const SHAPE: [&str; 5] = ["axes", "bytes to a number", "cells", "particles", "surfaces"];
+
+#[inline(never)]
+fn restore_shape(from: &mut In<'_>, shape: [usize; 5]) -> Result<(), RestoreError> {
+    for (what, expected) in SHAPE.into_iter().zip(shape) {
+        from.expect(what, expected)?;
+    }
+    Ok(())
+}
+
+#[inline(never)]
+fn save_window<T: Scalar, const D: usize>(grid: &Grid<T, D>, out: &mut Out<'_>) -> io::Result<()> {
+    let window = grid.window();
+    out.indices(&window.first())?;
+    for count in window.shape() {
+        out.count(count)?;
+    }
+    Ok(())
+}
+
+#[inline(never)]
+fn read_window<const D: usize>(from: &mut In<'_>) -> Result<Window<D>, RestoreError> {
+    let (mut first, mut shape) = ([0; D], [0; D]);
+    from.indices(&mut first)?;
+    for count in &mut shape {
+        *count = from.count()?;
+    }
+    Ok(Window::new(first, shape))
+}
+
+#[inline(never)]
+fn restore_surface<T>(
+    surface: &mut [SurfacePoint<T>],
+    from: &mut In<'_>,
+    particles: usize,
+) -> Result<(), RestoreError> {
+    for (index, point) in surface.iter_mut().enumerate() {
+        point.particle = from.count_below(particles, "the particle of surface", index)?;
+    }
+    Ok(())
+}
+
+/// Cells of the particles, which have numbers unless some have `strayed`.
+#[inline(never)]
+fn restore_cells<T: Scalar, const D: usize>(
+    bins: &mut Bins<D>,
+    from: &mut In<'_>,
+    grid: &Grid<T, D>,
+    strayed: bool,
+) -> Result<(), RestoreError> {
+    let counts = grid.cells();
+    for (index, cell) in bins.cells_mut().iter_mut().enumerate() {
+        from.indices(cell)?;
+        let outside = cell.iter().zip(counts).any(|(&c, count)| c as usize >= count);
+        if outside || !strayed && !grid.has_numbers(cell, 0) {
+            let what = "the cell of particle";
+            return Err(RestoreError::Invalid { what, index });
         }
-        self.bins.note_crossings(1);
+    }
+    bins.note_crossings(1);
+    Ok(())
+}
+
+impl<T: Scalar, const D: usize> Balance<T, D> {
+    #[inline(never)]
+    fn save(&self, out: &mut Out<'_>) -> io::Result<()> {
+        out.flag(self.momentum.is_some())?;
+        out.numbers(self.momentum.unwrap_or_else(SVector::zeros).as_slice())
+    }
+
+    #[inline(never)]
+    fn restore(&mut self, from: &mut In<'_>) -> Result<(), RestoreError> {
+        let known = from.flag()?;
+        let mut momentum = SVector::<T, D>::zeros();
+        from.numbers(momentum.as_mut_slice())?;
+        self.momentum = known.then_some(momentum);
         Ok(())
     }
 }

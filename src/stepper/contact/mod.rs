@@ -34,9 +34,12 @@ mod wall;
 use nalgebra::SVector;
 
 use super::acceleration::Walls;
+use super::order::Order;
 use super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
+use crate::grid::{Cell, Grid};
 use crate::law::LawSweep;
+use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -206,22 +209,45 @@ where
     /// Lets the walls act on particles and DOFs, whose velocities are those that the step would have without
     /// them.
     pub(super) fn apply_wall_contact(&mut self, forcing: &Forcing<T, D>) {
-        if Wall::all(forcing).next().is_none() {
-            return;
+        if Wall::<T, D>::are_there(forcing) {
+            self.apply_contact_with(forcing);
         }
+    }
+
+    // Out of line: there is a step for every method, and few runs have walls that rub.
+    #[inline(never)]
+    fn apply_contact_with(&mut self, forcing: &Forcing<T, D>) {
         let by_sums = const { R::AMOUNTS_AT_PARTICLES && !R::PARTICLE_MATRIX };
         if !self.contact.dofs.fit(forcing, self.dofs.mass.len()) {
-            self.allocate_wall_contact(forcing, by_sums);
+            let reach = self.basis.reach();
+            let room = Room {
+                shape: self.basis.dofs(&self.grid),
+                reach: if by_sums { reach } else { mapping::reach::<D>() },
+                seen: (reach + 1).pow(D as u32),
+                by_sums,
+            };
+            let initial = &self.particles.initial_position;
+            self.contact
+                .allocate(room, &self.face_dofs, forcing, (&self.grid, initial, &self.order));
         }
         self.contact.dofs.begin(forcing);
-        self.detect_contacts(forcing);
+        let space = (&self.basis, &self.grid, self.bins.cells());
+        detect_contacts(space, &self.particles, &self.order, forcing, &mut self.contact);
+        self.contact
+            .invert_masses(&self.dofs.mass, &self.face_dofs, forcing);
         self.contact.read(&self.dofs.velocity);
         let scale = self.contact.scale();
         if scale <= T::zero() {
             return;
         }
         let mut action = match by_sums {
-            true => self.push_by_sums(scale),
+            true => sums::push_by_sums(
+                space,
+                &mut self.particles,
+                scale,
+                &mut self.contact,
+                &mut self.dofs,
+            ),
             false => self.push_by_mapping(forcing, scale),
         };
         let velocities = &mut self.dofs.velocity;
@@ -234,91 +260,60 @@ where
         }
         self.diagnostics.record_walls(&action);
     }
+}
 
+/// How much contact needs room for.
+struct Room<const D: usize> {
+    /// Of the lattice of all DOFs.
+    shape: [usize; D],
+    /// How far apart along each axis DOFs feel each other.
+    reach: usize,
+    /// Most DOFs that a particle sees.
+    seen: usize,
+    /// Whether the mapping is by particle sums.
+    by_sums: bool,
+}
+
+impl<T: Scalar, const D: usize> WallContact<T, D> {
     /// Allocates what the walls that rub in this step need.
     #[cold]
     #[inline(never)]
-    fn allocate_wall_contact(&mut self, forcing: &Forcing<T, D>, by_sums: bool) {
-        let reach = match by_sums {
-            true => self.basis.reach(),
-            false => mapping::reach::<D>(),
-        };
-        let contact = &mut self.contact;
-        let basis = (&self.basis, &self.grid);
-        contact.dofs.lay(basis, &self.face_dofs, forcing, reach);
-        let seen = (self.basis.reach() + 1).pow(D as u32);
-        contact.delassus.lay(&contact.dofs, seen);
-        let (places, dofs) = (contact.dofs.dofs.len(), self.dofs.mass.len());
-        contact.subspace.lay(places);
-        contact.inverse = vec![SVector::zeros(); places];
-        contact.velocity = vec![SVector::zeros(); places];
-        contact.impulse = vec![SVector::zeros(); places];
-        contact.gain = vec![SVector::zeros(); dofs];
-        let shapes = shapes(&self.grid, &self.particles.initial_position);
-        contact.shapes.resize(shapes.len(), SVector::zeros());
+    fn allocate(
+        &mut self,
+        room: Room<D>,
+        face_dofs: &[Vec<u32>],
+        forcing: &Forcing<T, D>,
+        (grid, initial, order): (&Grid<T, D>, &[SVector<T, D>], &Order),
+    ) {
+        self.dofs.lay(room.shape, face_dofs, forcing, room.reach);
+        self.delassus.lay(&self.dofs, room.seen);
+        let (places, dofs) = (self.dofs.dofs.len(), room.shape.iter().product());
+        self.subspace.lay(places);
+        self.inverse = vec![SVector::zeros(); places];
+        self.velocity = vec![SVector::zeros(); places];
+        self.impulse = vec![SVector::zeros(); places];
+        self.gain = vec![SVector::zeros(); dofs];
+        let shapes = shapes(grid, initial);
+        self.shapes.resize(shapes.len(), SVector::zeros());
         for (place, shape) in shapes.into_iter().enumerate() {
-            contact.shapes[self.order.number(place)] = shape;
+            self.shapes[order.number(place)] = shape;
         }
-        contact.near = Vec::with_capacity(self.particles.len());
-        contact.closed = Vec::with_capacity(contact.dofs.contacts.len());
-        if !by_sums {
-            contact.reached = vec![SVector::zeros(); dofs];
-            contact.kicks = vec![SVector::zeros(); self.particles.len()];
-            contact.free = vec![SVector::zeros(); places];
-            contact.tried.clone_from(&contact.dofs.contacts);
+        self.near = Vec::with_capacity(initial.len());
+        self.closed = Vec::with_capacity(self.dofs.contacts.len());
+        if !room.by_sums {
+            self.reached = vec![SVector::zeros(); dofs];
+            self.kicks = vec![SVector::zeros(); initial.len()];
+            self.free = vec![SVector::zeros(); places];
+            self.tried.clone_from(&self.dofs.contacts);
         }
     }
 
-    /// Finds the particles at the walls, sums their masses in pairs of DOFs, and sees which contacts are
-    /// closed.
-    fn detect_contacts(&mut self, forcing: &Forcing<T, D>) {
-        let WallContact {
-            dofs,
-            delassus,
-            near,
-            closed,
-            shapes,
-            ..
-        } = &mut self.contact;
-        let (basis, grid, particles) = (&self.basis, &self.grid, &self.particles);
-        delassus.clear();
-        near.clear();
-        let sites = particles.sites(self.bins.cells());
-        for (p, (x, cell)) in sites.positions.iter().zip(sites.cells).enumerate() {
-            // Functions of further cells have no value at the wall.
-            if !Wall::all(forcing).any(|wall| wall.cells_to(grid, cell) <= basis.reach()) {
-                continue;
-            }
-            let root = particles.volume[p].powf(T::one() / T::count(D));
-            let half = shapes[self.order.number(p)] * (root / T::lit(2.0));
-            sites.for_each(basis, grid, p, |dof, phi, _| {
-                let Some(place) = dofs.place(dof).filter(|_| phi > T::zero()) else {
-                    return;
-                };
-                delassus.see(place, phi);
-                for contact in dofs.contacts_at(place) {
-                    let surface = contact.wall.distance(grid, x) - half[contact.wall.face.axis];
-                    contact.gap = contact.gap.min(surface);
-                }
-            });
-            if delassus.add_particle(dofs, particles.mass[p]) {
-                near.push(p as u32);
-            }
-        }
-        closed.clear();
-        for (k, contact) in dofs.contacts.iter().enumerate() {
-            if contact.gap <= grid.cell_size()[contact.wall.face.axis] * T::lit(CLOSED) {
-                closed.push(k as u32);
-            }
-        }
-        self.invert_masses(forcing);
-    }
-
-    /// One over the lumped mass of each DOF on a wall, nothing for components that another face holds.
-    fn invert_masses(&mut self, forcing: &Forcing<T, D>) {
-        let WallContact { dofs, inverse, .. } = &mut self.contact;
+    /// One over the lumped `masses` of each DOF on a wall, nothing for components that another face holds.
+    #[inline(never)]
+    fn invert_masses(&mut self, masses: &[T], face_dofs: &[Vec<u32>], forcing: &Forcing<T, D>) {
+        let Self { dofs, inverse, .. } = self;
         for (inverse, &dof) in inverse.iter_mut().zip(&dofs.dofs) {
-            let mass = self.dofs.mass[dof as usize];
+            let mass = masses[dof as usize];
             let value = if mass > T::zero() {
                 T::one() / mass
             } else {
@@ -326,10 +321,59 @@ where
             };
             *inverse = SVector::from_element(value);
         }
-        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, _, _| {
+        Walls::of_solid(face_dofs, forcing).for_each_held(|dof, axis, _, _| {
             if let Some(place) = dofs.place(dof) {
                 inverse[place][axis] = T::zero();
             }
         });
+    }
+}
+
+/// Finds the particles at the walls, sums their masses in pairs of DOFs, and sees which contacts are closed.
+#[inline(never)]
+fn detect_contacts<T: Scalar, const D: usize, B: BasisFamily<T, D>, N, Q>(
+    (basis, grid, cells): (&B, &Grid<T, D>, &[Cell<D>]),
+    particles: &Particles<T, D, N, Q>,
+    order: &Order,
+    forcing: &Forcing<T, D>,
+    contact: &mut WallContact<T, D>,
+) {
+    let WallContact {
+        dofs,
+        delassus,
+        near,
+        closed,
+        shapes,
+        ..
+    } = contact;
+    delassus.clear();
+    near.clear();
+    let sites = particles.sites(cells);
+    for (p, (x, cell)) in sites.positions.iter().zip(sites.cells).enumerate() {
+        // Functions of further cells have no value at the wall.
+        if !Wall::all(forcing).any(|wall| wall.cells_to(grid, cell) <= basis.reach()) {
+            continue;
+        }
+        let root = particles.volume[p].powf(T::one() / T::count(D));
+        let half = shapes[order.number(p)] * (root / T::lit(2.0));
+        sites.for_each(basis, grid, p, |dof, phi, _| {
+            let Some(place) = dofs.place(dof).filter(|_| phi > T::zero()) else {
+                return;
+            };
+            delassus.see(place, phi);
+            for contact in dofs.contacts_at(place) {
+                let surface = contact.wall.distance(grid, x) - half[contact.wall.face.axis];
+                contact.gap = contact.gap.min(surface);
+            }
+        });
+        if delassus.add_particle(dofs, particles.mass[p]) {
+            near.push(p as u32);
+        }
+    }
+    closed.clear();
+    for (k, contact) in dofs.contacts.iter().enumerate() {
+        if contact.gap <= grid.cell_size()[contact.wall.face.axis] * T::lit(CLOSED) {
+            closed.push(k as u32);
+        }
     }
 }

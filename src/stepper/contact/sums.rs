@@ -5,84 +5,93 @@ use nalgebra::SVector;
 use super::solve::Problem;
 use super::{WallAction, WallContact};
 use crate::basis::BasisFamily;
-use crate::law::LawSweep;
-use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
+use crate::grid::{Cell, Grid};
+use crate::particles::Particles;
 use crate::scalar::Scalar;
-use crate::stepper::Stepper;
-use crate::transfer::Transfer;
+use crate::stepper::dofs::Dofs;
 
 /// Share of the walls' greatest relative velocity within which the contact law is to hold.
 const TOLERANCE: f64 = 1e-11;
 
-impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
-where
-    T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
-    L: LawSweep<T, D>,
-    P: Phase<T, D>,
-    X: Transfer<T, D>,
-{
-    /// Solves for the impulses and passes them on.
-    pub(super) fn push_by_sums(&mut self, scale: T) -> WallAction<T, D> {
-        let contact = &mut self.contact;
-        let least = (scale * T::lit(TOLERANCE)).max(contact.round_off());
-        contact.delassus.sum_up(&contact.dofs, &contact.inverse);
-        contact.delassus.complete(&contact.dofs);
+/// Solves for the impulses and passes them on.
+#[inline(never)]
+pub(super) fn push_by_sums<T: Scalar, const D: usize, B: BasisFamily<T, D>, N, Q>(
+    space: (&B, &Grid<T, D>, &[Cell<D>]),
+    particles: &mut Particles<T, D, N, Q>,
+    scale: T,
+    contact: &mut WallContact<T, D>,
+    dofs: &mut Dofs<T, D>,
+) -> WallAction<T, D> {
+    let Some(settled) = contact.solve_for_sums(scale) else {
+        return WallAction::none();
+    };
+    let mut action = pass_on(space, particles, contact, dofs);
+    action.solved = settled;
+    action
+}
+
+impl<T: Scalar, const D: usize> WallContact<T, D> {
+    /// The velocities that the impulses give to the walls' DOFs; whether they were found within the
+    /// tolerance, and nothing where there is no impulse.
+    #[inline(never)]
+    fn solve_for_sums(&mut self, scale: T) -> Option<bool> {
+        let least = (scale * T::lit(TOLERANCE)).max(self.round_off());
+        self.delassus.sum_up(&self.dofs, &self.inverse);
+        self.delassus.complete(&self.dofs);
         let mut problem = Problem {
-            dofs: &mut contact.dofs,
-            delassus: &contact.delassus,
-            velocity: &mut contact.velocity,
-            closed: &contact.closed,
-            subspace: Some(&mut contact.subspace),
+            dofs: &mut self.dofs,
+            delassus: &self.delassus,
+            velocity: &mut self.velocity,
+            closed: &self.closed,
+            subspace: Some(&mut self.subspace),
         };
         let solved = problem.solve(least);
         if !solved.changed {
-            return WallAction::none();
+            return None;
         }
-        contact.add_up_impulses();
-        for (impulse, inverse) in contact.impulse.iter_mut().zip(&contact.inverse) {
+        self.add_up_impulses();
+        for (impulse, inverse) in self.impulse.iter_mut().zip(&self.inverse) {
             impulse.component_mul_assign(inverse);
         }
-        let mut action = self.pass_on();
-        action.solved = solved.settled;
-        action
+        Some(solved.settled)
     }
+}
 
-    /// `v_p += sum_i phi_i N R_i`, and the momentum gained to all DOFs that the particle sees.
-    fn pass_on(&mut self) -> WallAction<T, D> {
-        let WallContact {
-            dofs,
-            near,
-            impulse,
-            gain,
-            ..
-        } = &mut self.contact;
-        let (basis, grid, particles) = (&self.basis, &self.grid, &mut self.particles);
-        let mut action = WallAction::none();
-        gain.fill(SVector::zeros());
-        for &p in near.iter() {
-            let p = p as usize;
-            let sites = particles.sites(self.bins.cells());
-            let mut by = SVector::zeros();
-            sites.for_each(basis, grid, p, |dof, phi, _| {
-                if let Some(place) = dofs.place(dof) {
-                    by += impulse[place] * phi;
-                }
-            });
-            let mass = particles.mass[p];
-            let momentum = by * mass;
-            action.impulse += momentum;
-            sites.for_each(basis, grid, p, |dof, phi, _| gain[dof] += momentum * phi);
-            particles.velocity[p] += by;
-        }
-        let velocities = self.dofs.velocity.iter_mut().zip(&self.dofs.mass);
-        for ((velocity, &mass), gain) in velocities.zip(gain.iter()) {
-            if mass > T::zero() {
-                *velocity += gain / mass;
+/// `v_p += sum_i phi_i N R_i`, and the momentum gained to all DOFs that the particle sees.
+fn pass_on<T: Scalar, const D: usize, B: BasisFamily<T, D>, N, Q>(
+    (basis, grid, cells): (&B, &Grid<T, D>, &[Cell<D>]),
+    particles: &mut Particles<T, D, N, Q>,
+    contact: &mut WallContact<T, D>,
+    all: &mut Dofs<T, D>,
+) -> WallAction<T, D> {
+    let WallContact {
+        dofs,
+        near,
+        impulse,
+        gain,
+        ..
+    } = contact;
+    let mut action = WallAction::none();
+    gain.fill(SVector::zeros());
+    for &p in near.iter() {
+        let p = p as usize;
+        let sites = particles.sites(cells);
+        let mut by = SVector::zeros();
+        sites.for_each(basis, grid, p, |dof, phi, _| {
+            if let Some(place) = dofs.place(dof) {
+                by += impulse[place] * phi;
             }
-        }
-        action
+        });
+        let momentum = by * particles.mass[p];
+        action.impulse += momentum;
+        sites.for_each(basis, grid, p, |dof, phi, _| gain[dof] += momentum * phi);
+        particles.velocity[p] += by;
     }
+    let velocities = all.velocity.iter_mut().zip(&all.mass);
+    for ((velocity, &mass), gain) in velocities.zip(gain.iter()) {
+        if mass > T::zero() {
+            *velocity += gain / mass;
+        }
+    }
+    action
 }

@@ -3,7 +3,6 @@
 use nalgebra::SVector;
 
 use super::super::{FaceCondition, Forcing};
-use crate::basis::BasisFamily;
 use crate::grid::{Cell, Face, Grid, Side};
 use crate::scalar::Scalar;
 
@@ -34,6 +33,12 @@ impl<T: Scalar, const D: usize> Wall<T, D> {
             }),
             _ => None,
         })
+    }
+
+    /// Whether a step has any.
+    #[inline(never)]
+    pub(super) fn are_there(forcing: &Forcing<T, D>) -> bool {
+        Self::all(forcing).next().is_some()
     }
 
     /// The component along the normal that points into the grid.
@@ -140,10 +145,10 @@ impl<T: Scalar, const D: usize> WallDofs<T, D> {
                 .eq(self.faces.iter().copied())
     }
 
-    /// Takes in which faces rub. DOFs at most `reach` apart along each axis are neighbours.
-    pub(super) fn lay<B: BasisFamily<T, D>>(
+    /// Takes in which faces rub of a lattice of DOFs of this `shape`. DOFs at most `reach` apart along each axis are neighbours.
+    pub(super) fn lay(
         &mut self,
-        (basis, grid): (&B, &Grid<T, D>),
+        shape: [usize; D],
         face_dofs: &[Vec<u32>],
         forcing: &Forcing<T, D>,
         reach: usize,
@@ -165,7 +170,7 @@ impl<T: Scalar, const D: usize> WallDofs<T, D> {
         self.contacts.sort_by_key(|contact| contact.place);
         self.dofs = self.contacts.iter().map(|contact| contact.place as u32).collect();
         self.dofs.dedup();
-        self.places = vec![NOWHERE; basis.dof_count(grid)];
+        self.places = vec![NOWHERE; shape.iter().product()];
         for (place, &dof) in self.dofs.iter().enumerate() {
             self.places[dof as usize] = place as u32;
         }
@@ -177,7 +182,7 @@ impl<T: Scalar, const D: usize> WallDofs<T, D> {
         self.contact_starts = places
             .map(|place| contacts.partition_point(|contact| contact.place < place))
             .collect();
-        self.join_neighbours(basis.dofs(grid), reach);
+        self.join_neighbours(shape, reach);
     }
 
     /// Forgets which faces rub: DOFs have other numbers.

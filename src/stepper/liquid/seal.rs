@@ -327,7 +327,7 @@ impl<T: Scalar> Seal<T> {
         &mut self,
         place: &Place<D>,
         area: T,
-        visit: impl FnOnce(&mut dyn FnMut(usize, T)),
+        visit: &mut dyn FnMut(&mut dyn FnMut(usize, T)),
     ) {
         let Points {
             ends,
@@ -449,7 +449,7 @@ mod tests {
             };
             let cell = x.floor();
             let (first, right) = (cell as usize, x - cell);
-            seal.add_point::<2>(&place, 1.0 / points.len() as f64, |add| {
+            seal.add_point::<2>(&place, 1.0 / points.len() as f64, &mut |add| {
                 for (k, along) in [1.0 - right, right].into_iter().enumerate() {
                     add(first + k, along * (1.0 - y));
                     add(first + k + cells + 1, along * y);

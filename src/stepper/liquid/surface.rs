@@ -154,26 +154,11 @@ where
                 layer,
                 shape,
             };
-            self.seal.add_point(&place, point.area, |add| {
+            self.seal.add_point(&place, point.area, &mut |add| {
                 basis.for_each(grid, cell, &x, |i, phi, _| add(i, phi));
             });
         }
-        if self.seal.is_empty() {
-            return;
-        }
-        self.seal.number();
-        let components = &mut self.seal.components;
-        let walls = [
-            Walls::of_solid(&self.face_dofs, forcing),
-            Walls::of_liquid(&self.face_dofs, forcing),
-        ];
-        for (phase, walls) in walls.into_iter().enumerate() {
-            walls.for_each_held(|dof, axis, _, _| {
-                if let Some(k) = components.find::<D>(dof, axis) {
-                    components.held[k][phase] = true;
-                }
-            });
-        }
+        number_components(&mut self.seal, Walls::of_both(&self.face_dofs, forcing));
     }
 
     /// Takes from the accelerations what would let liquid pass a sealed surface. The pressure there acts on
@@ -204,8 +189,26 @@ where
     }
 }
 
+/// Numbers what the points of the seals look at, and notes what walls hold of it.
+#[inline(never)]
+fn number_components<T: Scalar, const D: usize>(seal: &mut Seal<T>, walls: [Walls<'_, T, D>; 2]) {
+    if seal.is_empty() {
+        return;
+    }
+    seal.number();
+    let components = &mut seal.components;
+    for (phase, walls) in walls.into_iter().enumerate() {
+        walls.for_each_held(|dof, axis, _, _| {
+            if let Some(k) = components.find::<D>(dof, axis) {
+                components.held[k][phase] = true;
+            }
+        });
+    }
+}
+
 /// Takes from the `motion` of both phases the slip through the sealed surfaces, where every DOF answers by
 /// itself: with its lumped masses and the given multiple of its drag.
+#[inline(never)]
 fn seal<T: Scalar, const D: usize>(
     seal: &mut Seal<T>,
     [solid_mass, liquid_mass]: [&[T]; 2],

@@ -1,8 +1,10 @@
 //! Velocities of the DOFs of both phases from their momenta.
 
 use super::super::acceleration::Walls;
+use super::super::dofs::Dofs;
 use super::super::velocity::undo_mass;
 use super::super::{Forcing, Stepper};
+use super::acceleration::ShareOfDrag;
 use crate::basis::BasisFamily;
 use crate::law::LawSweep;
 use crate::phase::Phase;
@@ -30,34 +32,42 @@ where
 
     /// Momenta to velocities, with the told values at held DOFs and no slip through sealed surfaces.
     pub(in super::super) fn divide_both(&mut self, dt: T, forcing: &Forcing<T, D>, fresh: bool) {
-        let walls = [
-            Walls::of_solid(&self.face_dofs, forcing),
-            Walls::of_liquid(&self.face_dofs, forcing),
-        ];
-        for (dofs, walls) in [&mut self.dofs, &mut self.liquid].into_iter().zip(walls) {
-            undo_mass(dofs, self.mass, &walls, fresh);
+        let walls = Walls::of_both(&self.face_dofs, forcing);
+        let dofs = [&mut self.dofs, &mut self.liquid];
+        for (dofs, walls) in dofs.into_iter().zip(&walls) {
+            undo_mass(dofs, self.mass, walls, fresh);
         }
-        self.hold_velocities(dt, forcing);
+        let share = self.share_of_drag(dt);
+        hold_velocities([&mut self.dofs, &mut self.liquid], &self.drag, walls, share);
         if R::PARTICLE_MATRIX {
             self.seal_mapped_jointly();
         } else {
             self.seal_velocities(dt);
         }
     }
+}
 
-    /// Told velocities at held DOFs. Where the liquid passes, the drag that the solid's change makes in a
-    /// step moves it along, as it does with the accelerations: held otherwise in one than in the other, kick
-    /// and drift are not adjoint, and where the drag is strong the energy grows at any step near the wave's.
-    fn hold_velocities(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        let share = self.share_of_drag(dt);
-        let (solid, liquid) = (&mut self.dofs.velocity, &mut self.liquid.velocity);
-        let (mass, drag) = (&self.liquid.mass, &self.drag);
-        Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, velocity, _| {
-            liquid[dof][axis] += share(mass[dof], drag[dof]) * (velocity - solid[dof][axis]);
-            solid[dof][axis] = velocity;
-        });
-        Walls::of_liquid(&self.face_dofs, forcing).for_each_held(|dof, axis, velocity, _| {
-            liquid[dof][axis] = velocity;
-        });
-    }
+/// Told velocities at held DOFs. Where the liquid passes, the drag that the solid's change makes in a step
+/// moves it along, as it does with the accelerations: held otherwise in one than in the other, kick and drift
+/// are not adjoint, and where the drag is strong the energy grows at any step near the wave's.
+#[inline(never)]
+fn hold_velocities<T: Scalar, const D: usize>(
+    [solid, liquid]: [&mut Dofs<T, D>; 2],
+    drag: &[T],
+    [of_solid, of_liquid]: [Walls<'_, T, D>; 2],
+    share: ShareOfDrag<T>,
+) {
+    let Dofs {
+        mass,
+        velocity: liquid,
+        ..
+    } = liquid;
+    let solid = &mut solid.velocity;
+    of_solid.for_each_held(|dof, axis, velocity, _| {
+        liquid[dof][axis] += share.of(mass[dof], drag[dof]) * (velocity - solid[dof][axis]);
+        solid[dof][axis] = velocity;
+    });
+    of_liquid.for_each_held(|dof, axis, velocity, _| {
+        liquid[dof][axis] = velocity;
+    });
 }
