@@ -55,7 +55,20 @@ where
     pub fn stiffness_bound(&mut self, forcing: &Forcing<T, D>) -> T {
         self.prepare();
         let held = self.held_dofs(forcing);
-        let mut sums = self.sum_masses_and_slopes(&held);
+        // With a liquid that flows of unit density, since its balances differ.
+        let waves = match P::FLOWS {
+            true => self.largest_ratio(&held, |p| [self.particles.volume[p]; 2]),
+            false => self.largest_ratio(&held, |p| [self.particles.mass[p]; 2]),
+        };
+        match const { P::DIFFUSES } {
+            true => waves.max(self.diffusion_geometry()),
+            false => waves,
+        }
+    }
+
+    /// The bound that the amounts of the particles give, of the mass and of the stiffness.
+    pub(super) fn largest_ratio(&self, held: &[bool], amounts: impl Fn(usize) -> [T; 2] + Sync) -> T {
+        let mut sums = self.sum_masses_and_slopes(held, amounts);
         for sum in &mut sums {
             if sum[0] > T::zero() {
                 sum[1] /= sum[0];
@@ -80,34 +93,33 @@ where
         dofs
     }
 
-    /// `M_i` and `W_i` of every DOF, for waves of 1 m/s. With a liquid that flows of unit density, since its
-    /// balances differ.
-    fn sum_masses_and_slopes(&self, held: &[bool]) -> Vec<[T; 2]> {
+    /// `M_i` and `W_i` of every DOF, for `m_p` and `m_p c_p^2` of every particle.
+    fn sum_masses_and_slopes(
+        &self,
+        held: &[bool],
+        amounts: impl Fn(usize) -> [T; 2] + Sync,
+    ) -> Vec<[T; 2]> {
         let (basis, grid) = (&self.basis, &self.grid);
-        let weights = match P::FLOWS {
-            true => &self.particles.volume[..],
-            false => &self.particles.mass[..],
-        };
         let spans = &self.spans.particles[..];
-        let (span, parallel) = share::<D>(spans, weights.len(), self.spans.lengths[0]);
+        let (span, parallel) = share::<D>(spans, self.particles.len(), self.spans.lengths[0]);
         let (mut storage, mut sums) = (Vec::new(), vec![T::zero(); 2 * held.len()]);
         let work = (
             &self.particles.position[..],
             self.bins.cells(),
-            weights,
             Windows::new(spans, &mut storage, &mut sums, 2),
         );
-        each_span(parallel, span, work, &|_, (positions, cells, weights, sums)| {
+        each_span(parallel, span, work, &|start, (positions, cells, sums)| {
             let (first, sums) = sums.one();
             let (sums, _) = sums.as_chunks_mut::<2>();
-            for ((x, cell), &weight) in positions.iter().zip(cells).zip(weights) {
+            for (p, (x, cell)) in (start..).zip(positions.iter().zip(cells)) {
+                let [weight, stiffness] = amounts(p);
                 let mut slopes = T::zero();
                 basis.for_each(grid, cell, x, |i, _, gradient| {
                     if !held[i] {
                         slopes += length(&gradient);
                     }
                 });
-                slopes *= weight;
+                slopes *= stiffness;
                 basis.for_each(grid, cell, x, |i, phi, gradient| {
                     let [mass, bound] = &mut sums[i - first];
                     *mass += weight * phi;
@@ -143,7 +155,9 @@ where
     /// velocities that the particles have now: `1 / dt = c sqrt(stiffness) / 2 + max_a |v_a| / h_a` of the
     /// worst particle, so that neither a wave nor a particle, nor a wave in moving material, gets further
     /// than the scheme's stencil in a step. For linear functions along one axis that is the classical
-    /// `dt = h / (c + |v|)`. With a liquid that flows also what its drag allows. `None` if there is no wave.
+    /// `dt = h / (c + |v|)`. With a liquid that flows also what its drag allows, and in a phase that diffuses
+    /// no more than `2 / (D stiffness)`, `D` the diffusivity: `h^2 / (2 D)`. `None` if there is no wave, and
+    /// nothing diffuses.
     pub fn largest_step(&self, stiffness: T) -> Option<CriticalStep<T>> {
         let count = self.particles.len().div_ceil(PARTICLES);
         let mut found = vec![None; count];
@@ -154,7 +168,14 @@ where
             let limits = (first..first + positions.len()).filter_map(|p| self.largest_step_of(p, stiffness));
             found.set(limits.reduce(smaller));
         });
-        found.into_iter().flatten().reduce(smaller)
+        let wave = found.into_iter().flatten().reduce(smaller);
+        match const { P::DIFFUSES } {
+            true => [wave, self.diffusion_limit(stiffness)]
+                .into_iter()
+                .flatten()
+                .reduce(smaller),
+            false => wave,
+        }
     }
 
     fn largest_step_of(&self, p: usize, stiffness: T) -> Option<CriticalStep<T>> {
@@ -179,7 +200,7 @@ where
     }
 }
 
-fn smaller<T: Scalar>(a: CriticalStep<T>, b: CriticalStep<T>) -> CriticalStep<T> {
+pub(super) fn smaller<T: Scalar>(a: CriticalStep<T>, b: CriticalStep<T>) -> CriticalStep<T> {
     if b.step < a.step { b } else { a }
 }
 

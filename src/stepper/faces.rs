@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{FaceCondition, Forcing, Stepper};
+use super::{DiffusionCondition, FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::grid::{Cell, Face, Grid, Side};
@@ -77,7 +77,9 @@ where
         for (face, left_out) in Face::all::<D>().zip(&self.left_out) {
             let wall = match forcing.face(face) {
                 FaceCondition::Held { .. } | FaceCondition::Frictional { .. } => true,
-                FaceCondition::Free | FaceCondition::Traction(_) => false,
+                FaceCondition::Free | FaceCondition::Traction(_) => {
+                    matches!(forcing.diffusion(face), DiffusionCondition::Value(_))
+                }
             };
             if let (true, &Some(dof)) = (wall, left_out) {
                 return Err(StepError::WallNotHeld { face, dof });

@@ -144,6 +144,14 @@ pub enum Property {
     LiquidEnergy,
     /// What the liquid adds to the stress works as much as the energy of the liquid grows.
     PoreStressIsWork,
+    /// The capacity for what diffuses is positive, and proportional to mass and volume.
+    Capacity,
+    /// `add_to_value` adds to the value of a particle.
+    AddsToValue,
+    /// There is no flux without a gradient, and none towards higher values: entropy does not fall.
+    FluxOpposesGradient,
+    /// Flux over gradient is at most `diffusivity` times the capacity per volume.
+    Diffusivity,
 }
 
 impl fmt::Display for Property {
@@ -213,6 +221,10 @@ impl fmt::Display for Property {
             Self::LiquidStiffness => "pressure over change of volume is `liquid_stiffness`",
             Self::LiquidEnergy => "the liquid's energy is the work of its pressure",
             Self::PoreStressIsWork => "what the liquid adds to the stress works as its energy grows",
+            Self::Capacity => "the capacity is positive and proportional to mass and volume",
+            Self::AddsToValue => "`add_to_value` adds to the value",
+            Self::FluxOpposesGradient => "what diffuses flows against its gradient, and without one not at all",
+            Self::Diffusivity => "flux over gradient is within the diffusivity",
         };
         f.write_str(words)
     }

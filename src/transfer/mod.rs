@@ -11,6 +11,7 @@
 //! | [`kick`](fn@kick) | G2P of accelerations, then P2G of the new momenta in the same sweep |
 //! | [`drift`] | G2P of velocities and their gradients: positions, and the increments that laws are asked for |
 //! | [`fits`] | P2G from polynomials fitted in each cell |
+//! | [`scalars`] | G2P of a scalar field and of its gradient |
 //! | [`pairs`] | the consistent mass matrix |
 //!
 //! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs,
@@ -30,6 +31,7 @@ mod lines;
 mod p2g;
 mod pairs;
 mod rows;
+mod scalars;
 mod sums;
 
 pub(crate) use drift::{Drift, Outcome, drift};
@@ -38,6 +40,7 @@ pub(crate) use group::Group;
 pub(crate) use kick::{Kick, Momentum, kick};
 pub(crate) use p2g::{Contribution, Parts, Sum, p2g};
 pub(crate) use pairs::{sum_pairs, sums_apply};
+pub(crate) use scalars::{ScalarField, g2p};
 
 use crate::basis::{BasisFamily, Factors, FixedPoints};
 use crate::grid::{Cell, Grid};
