@@ -148,18 +148,19 @@ pub fn run<B: BasisFamily<f64, 1>>(basis: B) -> Result<f64, Box<dyn Error>> {
         loaded: true,
     };
     let surface = vec![end(0, low), end(points.len() - 1, high)];
-    let mut stepper = Stepper::new(Setup {
-        grid,
-        basis,
-        reconstruction: Shepard,
-        law: LinearElastic {
-            moduli: Moduli::uniaxial(modulus)?,
-        },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
-        particles,
-        surface,
-    })?;
+    let mut stepper = Stepper::new(
+        Setup::new(
+            grid,
+            basis,
+            Shepard,
+            LinearElastic {
+                moduli: Moduli::uniaxial(modulus)?,
+            },
+            OnePhase,
+            particles,
+        )
+        .with_surface(surface),
+    )?;
     let mut forcing = Forcing::none();
     forcing.set_face(low, FaceCondition::Traction(vector![-tension]));
     forcing.set_face(high, FaceCondition::Traction(vector![tension]));

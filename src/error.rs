@@ -236,6 +236,22 @@ pub enum StepError {
         /// The face.
         face: Face,
     },
+    /// A value at a face for what diffuses, where nothing does.
+    #[error(
+        "the face {face} has a value for what diffuses, but nothing diffuses in this phase; leave it out"
+    )]
+    ValueWithoutDiffusion {
+        /// The face.
+        face: Face,
+    },
+    /// A value at a face for what diffuses that is no number.
+    #[error("the face {face} has the value {value} for what diffuses; it must be finite")]
+    DiffusingValue {
+        /// The face.
+        face: Face,
+        /// The value.
+        value: f64,
+    },
     /// The step size is not a positive number.
     #[error("the time step is {value} s; it must be positive and finite")]
     StepSize {

@@ -62,12 +62,14 @@ impl<'a, T: Scalar, const D: usize> PhaseStep<'a, T, D> {
 /// What a particle carries besides its solid, and how that enters the balance of momentum.
 ///
 /// [`OnePhase`] is the dry solid: no data, no work. [`TwoPhase`] is a solid whose pores are full of a liquid
-/// that moves with a velocity of its own. Everything a phase adds to the step stands under `if P::COUPLED` or
-/// `if P::FLOWS`, since zero-sized data alone leave empty loops behind.
+/// that moves with a velocity of its own. Everything a phase adds to the step stands under `if P::COUPLED`,
+/// `if P::FLOWS` or `if P::DIFFUSES`, since zero-sized data alone leave empty loops behind.
 ///
-/// The hooks below [`Phase::validate`] are asked only of a phase that [`Phase::FLOWS`], which must write each
-/// of them: one that it forgets is an error at compile time, as soon as a stepper is made of it. Masses and
-/// forces of the liquid are those of [`mod@crate::stepper`]'s second balance of momentum.
+/// The hooks from [`Phase::liquid`] to [`Phase::liquid_stiffness`] are asked only of a phase that
+/// [`Phase::FLOWS`], which must write each of them: one that it forgets is an error at compile time, as soon
+/// as a stepper is made of it. Masses and forces of the liquid are those of [`mod@crate::stepper`]'s second
+/// balance of momentum. In the same way the hooks from [`Phase::capacity`] on belong to a phase that
+/// [`Phase::DIFFUSES`].
 ///
 /// [`crate::testing::check_phase`] checks that the parts agree with each other.
 pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
@@ -76,6 +78,11 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
 
     /// Whether a liquid moves through the pores with a velocity of its own. Implies [`Phase::COUPLED`].
     const FLOWS: bool = false;
+
+    /// Whether particles exchange a scalar with their neighbours, as heat goes from the warm to the cold.
+    /// Implies [`Phase::COUPLED`]; a phase that [`Phase::FLOWS`] cannot, since nothing carries along what its
+    /// liquid holds. `docs/theory/diffusion.md` has the scheme.
+    const DIFFUSES: bool = false;
 
     /// Data per particle; `()` takes no memory.
     type Particle: Copy + Default + Send + Sync;
@@ -154,9 +161,56 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
         const { assert!(!Self::FLOWS, "a phase that FLOWS wants an own `liquid_stiffness`") };
         T::zero()
     }
+
+    /// Capacity of a particle of this `mass` (kg) and `volume` (m3), positive: how much of what diffuses
+    /// raises its value by one (J/K of heat).
+    fn capacity(&self, _mass: T, _volume: T, _particle: &Self::Particle) -> T {
+        const { assert!(!Self::DIFFUSES, "a phase that DIFFUSES wants an own `capacity`") };
+        T::one()
+    }
+
+    /// Value of a particle that gradients are taken of (K of heat).
+    fn value(&self, _particle: &Self::Particle) -> T {
+        const { assert!(!Self::DIFFUSES, "a phase that DIFFUSES wants an own `value`") };
+        T::zero()
+    }
+
+    /// Adds to the value of a particle what it took in, over its capacity (K of heat).
+    fn add_to_value(&self, _change: T, _particle: &mut Self::Particle) {
+        const {
+            assert!(
+                !Self::DIFFUSES,
+                "a phase that DIFFUSES wants an own `add_to_value`"
+            )
+        };
+    }
+
+    /// Flux per area at a particle (W/m2 of heat) that a gradient of the value (K/m) drives, never towards
+    /// higher values: `-k grad theta`.
+    fn flux(&self, _gradient: &SVector<T, D>, _particle: &Self::Particle) -> SVector<T, D> {
+        const { assert!(!Self::DIFFUSES, "a phase that DIFFUSES wants an own `flux`") };
+        SVector::zeros()
+    }
+
+    /// Diffusivity (m2/s) of a particle of this `mass` (kg) and `volume` (m3): an upper bound of flux over
+    /// gradient and capacity per volume, `k / (rho c)`. The stable step is taken from it.
+    fn diffusivity(&self, _mass: T, _volume: T, _particle: &Self::Particle) -> T {
+        const {
+            assert!(
+                !Self::DIFFUSES,
+                "a phase that DIFFUSES wants an own `diffusivity`"
+            )
+        };
+        T::zero()
+    }
 }
 
 /// What constants of a phase ask of each other; evaluated where a stepper is made.
 pub(crate) const fn constants_agree<T: Scalar, const D: usize, P: Phase<T, D>>() {
     assert!(!P::FLOWS || P::COUPLED, "FLOWS wants COUPLED");
+    assert!(!P::DIFFUSES || P::COUPLED, "DIFFUSES wants COUPLED");
+    assert!(
+        !P::DIFFUSES || !P::FLOWS,
+        "a phase that FLOWS cannot DIFFUSE: nothing carries along what its liquid holds"
+    );
 }

@@ -27,6 +27,7 @@
 use nalgebra::SVector;
 
 use super::spans::{Spans, share};
+use super::waves::smaller;
 use super::{CriticalStep, FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::grid::{Face, Grid};
@@ -57,14 +58,24 @@ where
     /// reconstructions it bounds nothing: [`Stepper::stiffness`].
     pub fn stiffness_bound(&mut self, forcing: &Forcing<T, D>) -> T {
         self.prepare();
+        // With a liquid that flows of unit density, since its balances differ.
         let weights = match P::FLOWS {
             true => &self.particles.volume[..],
             false => &self.particles.mass[..],
         };
         let held = held_dofs(forcing, &self.face_dofs, self.dofs.mass.len());
+        let waves = self.largest_ratio(&held, [weights; 2]);
+        match const { P::DIFFUSES } {
+            true => waves.max(self.diffusion_geometry()),
+            false => waves,
+        }
+    }
+
+    /// The bound that amounts of the particles give, of the mass and of the stiffness.
+    pub(super) fn largest_ratio(&self, held: &[bool], amounts: [&[T]; 2]) -> T {
         let space = (&self.basis, &self.grid);
         let sites = self.particles.sites(self.bins.cells());
-        let ratios = slopes_over_masses(space, sites, weights, &self.spans, &held);
+        let ratios = slopes_over_masses(space, sites, amounts, &self.spans, held);
         for_values!(B, space.0, |basis| largest_mean((basis, space.1), sites, &ratios))
     }
 
@@ -72,10 +83,20 @@ where
     /// velocities that the particles have now: `1 / dt = c sqrt(stiffness) / 2 + max_a |v_a| / h_a` of the
     /// worst particle, so that neither a wave nor a particle, nor a wave in moving material, gets further
     /// than the scheme's stencil in a step. For linear functions along one axis that is the classical
-    /// `dt = h / (c + |v|)`. With a liquid that flows also what its drag allows. `None` if there is no wave.
+    /// `dt = h / (c + |v|)`. With a liquid that flows also what its drag allows, and in a phase that diffuses
+    /// no more than `2 / (D stiffness)`, `D` the diffusivity: `h^2 / (2 D)`. `None` if there is no wave, and
+    /// nothing diffuses.
     pub fn largest_step(&self, stiffness: T) -> Option<CriticalStep<T>> {
-        self.waves()
-            .largest_step(self.grid.inverse_cell_size(), stiffness)
+        let wave = self
+            .waves()
+            .largest_step(self.grid.inverse_cell_size(), stiffness);
+        match const { P::DIFFUSES } {
+            true => [wave, self.diffusion_limit(stiffness)]
+                .into_iter()
+                .flatten()
+                .reduce(smaller),
+            false => wave,
+        }
     }
 }
 
@@ -99,21 +120,21 @@ fn held_dofs<T: Scalar, const D: usize>(
     dofs
 }
 
-/// `M_i` and `W_i / M_i` of every DOF, for waves of 1 m/s; `weights` are the particles' masses. With a liquid
-/// that flows they are those of unit density, since its balances differ.
+/// `M_i` and `W_i / M_i` of every DOF, for `m_p` and `m_p c_p^2` of every particle.
 #[inline(never)]
 fn slopes_over_masses<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     (basis, grid): (&B, &Grid<T, D>),
     sites: Sites<'_, T, D>,
-    weights: &[T],
+    [weights, stiffnesses]: [&[T]; 2],
     spans: &Spans<T, D>,
     held: &[bool],
 ) -> Vec<[T; 2]> {
     let (span, parallel) = share::<D>(&spans.particles, weights.len(), spans.lengths[0]);
     let spans = &spans.particles[..];
     let (mut storage, mut sums) = (Vec::new(), vec![T::zero(); 2 * held.len()]);
-    let work = (sites, weights, Windows::new(spans, &mut storage, &mut sums, 2));
-    each_span(parallel, span, work, &|_, (sites, weights, sums)| {
+    let windows = Windows::new(spans, &mut storage, &mut sums, 2);
+    let work = (sites, weights, stiffnesses, windows);
+    each_span(parallel, span, work, &|_, (sites, weights, stiffnesses, sums)| {
         let (first, sums) = sums.one();
         let (sums, _) = sums.as_chunks_mut::<2>();
         for (p, &weight) in weights.iter().enumerate() {
@@ -123,7 +144,7 @@ fn slopes_over_masses<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
                     slopes += length(&gradient);
                 }
             });
-            slopes *= weight;
+            slopes *= stiffnesses[p];
             sites.for_each(basis, grid, p, |i, phi, gradient| {
                 let [mass, bound] = &mut sums[i - first];
                 *mass += weight * phi;

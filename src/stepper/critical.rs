@@ -6,7 +6,7 @@ use super::acceleration::{Walls, accelerate};
 use super::fitted::Fitted;
 use super::sums::Targets;
 use super::velocity::divide_by_mass;
-use super::waves::Waves;
+use super::waves::{Waves, smaller};
 use super::{FaceCondition, Forcing, Setup, Stepper, cloud};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Face, Grid};
@@ -24,6 +24,8 @@ pub enum Mechanism {
     Wave,
     /// The drag between solid and liquid, taken explicitly.
     Drag,
+    /// What diffuses gets from particle to particle.
+    Diffusion,
 }
 
 /// The largest stable step.
@@ -69,6 +71,9 @@ where
     /// With a liquid that flows the same iteration, with unit density and modulus, gives what grid, basis,
     /// reconstruction and layout contribute, and the two-phase problem is solved with it for every particle's
     /// material; the least step counts.
+    ///
+    /// In a phase that diffuses no more than twice one over the proved bound of its largest eigenvalue
+    /// (`docs/theory/diffusion.md`).
     pub fn critical_step(&self, forcing: &Forcing<T, D>) -> Option<CriticalStep<T>> {
         self.clone().into_critical_step(forcing)
     }
@@ -81,18 +86,25 @@ where
             let geometry = self.eigenvalue_of_unit_density(forcing)?;
             return self.waves().critical_step_of_both(geometry);
         }
+        let diffusion = match const { P::DIFFUSES } {
+            true => self.critical_diffusion(),
+            false => None,
+        };
         let speed = self.waves().largest_speed();
-        let eigenvalue = self.largest_eigenvalue(forcing, speed)?;
-        Some(CriticalStep {
-            step: T::lit(2.0) / eigenvalue.sqrt(),
-            mechanism: Mechanism::Wave,
-        })
+        let wave = self
+            .largest_eigenvalue(forcing, speed)
+            .map(|eigenvalue| CriticalStep {
+                step: T::lit(2.0) / eigenvalue.sqrt(),
+                mechanism: Mechanism::Wave,
+            });
+        [wave, diffusion].into_iter().flatten().reduce(smaller)
     }
 
     /// Stiffness (1/m2) of the layout for [`Stepper::largest_step`]: [`Stepper::stiffness_bound`] where that
     /// is proved, otherwise the largest eigenvalue for waves of 1 m/s, by power iteration, of a sample of
     /// some thousand particles: those in the cells about a corner of the bodies, or all where they are few.
-    /// `None` if nothing resists a motion.
+    /// `None` if nothing resists a motion. In a phase that diffuses at least what that contributes, so that
+    /// [`Stepper::largest_step`] bounds it too.
     ///
     /// Fits and consistent masses have no bound that is of use: a cell of which particles fill a part may be
     /// a hundred times as stiff as a full one, or a mass matrix next to singular.
@@ -100,6 +112,16 @@ where
         if R::PLAIN {
             return Some(self.stiffness_bound(forcing));
         }
+        let waves = self.stiffness_of_sample(forcing);
+        if const { !P::DIFFUSES } {
+            return waves;
+        }
+        self.prepare();
+        let diffusion = self.diffusion_geometry();
+        Some(waves.map_or(diffusion, |waves| waves.max(diffusion)))
+    }
+
+    fn stiffness_of_sample(&self, forcing: &Forcing<T, D>) -> Option<T> {
         let mut sample = self.sample()?;
         if P::FLOWS {
             return sample.eigenvalue_of_unit_density(forcing);

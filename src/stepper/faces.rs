@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{FaceCondition, Forcing};
+use super::{DiffusionCondition, FaceCondition, Forcing};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::grid::{Cell, Face, Grid, Side};
@@ -70,7 +70,9 @@ pub(super) fn walls_can_be_held<T: Scalar, const D: usize>(
     for (face, left_out) in Face::all::<D>().zip(left_out) {
         let wall = match forcing.face(face) {
             FaceCondition::Held { .. } | FaceCondition::Frictional { .. } => true,
-            FaceCondition::Free | FaceCondition::Traction(_) => false,
+            FaceCondition::Free | FaceCondition::Traction(_) => {
+                matches!(forcing.diffusion(face), DiffusionCondition::Value(_))
+            }
         };
         if let (true, &Some(dof)) = (wall, left_out) {
             return Err(StepError::WallNotHeld { face, dof });

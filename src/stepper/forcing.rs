@@ -80,6 +80,17 @@ pub enum PoreCondition<T> {
     Pressure(T),
 }
 
+/// What a scalar that diffuses meets at a face of the grid, for phases that diffuse; a step of another phase
+/// refuses a value.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum DiffusionCondition<T> {
+    /// No flux.
+    #[default]
+    Insulated,
+    /// The DOFs on the grid's face have this value (Dirichlet; K of heat).
+    Value(T),
+}
+
 /// Loads and boundary values of one step, as plain numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forcing<T, const D: usize> {
@@ -87,6 +98,7 @@ pub struct Forcing<T, const D: usize> {
     pub body_force: SVector<T, D>,
     faces: [[FaceCondition<T, D>; 2]; D],
     pores: [[PoreCondition<T>; 2]; D],
+    diffusion: [[DiffusionCondition<T>; 2]; D],
 }
 
 impl<T: Scalar, const D: usize> Forcing<T, D> {
@@ -96,6 +108,7 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
             body_force: SVector::zeros(),
             faces: [[FaceCondition::Free; 2]; D],
             pores: [[PoreCondition::Sealed; 2]; D],
+            diffusion: [[DiffusionCondition::Insulated; 2]; D],
         }
     }
 
@@ -134,8 +147,30 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
             .map_or(PoreCondition::Sealed, |sides| sides[face.side as usize])
     }
 
-    /// Refuses what a phase whose liquid flows, or one without such a liquid, does not look at.
-    pub(super) fn suits_phase(&self, flows: bool) -> Result<(), StepError> {
+    /// With a condition for what diffuses at a face. A face of an axis that does not exist is left out.
+    #[must_use]
+    pub fn with_diffusion(mut self, face: Face, condition: DiffusionCondition<T>) -> Self {
+        self.set_diffusion(face, condition);
+        self
+    }
+
+    /// Sets the condition for what diffuses at a face. A face of an axis that does not exist is left out.
+    pub fn set_diffusion(&mut self, face: Face, condition: DiffusionCondition<T>) {
+        if let Some(sides) = self.diffusion.get_mut(face.axis) {
+            sides[face.side as usize] = condition;
+        }
+    }
+
+    /// The condition for what diffuses at a face, [`DiffusionCondition::Insulated`] for an axis that does not
+    /// exist.
+    pub fn diffusion(&self, face: Face) -> DiffusionCondition<T> {
+        self.diffusion
+            .get(face.axis)
+            .map_or(DiffusionCondition::Insulated, |sides| sides[face.side as usize])
+    }
+
+    /// Refuses what a phase whose liquid flows or which diffuses, or one that does not, does not look at.
+    pub(super) fn suits_phase(&self, [flows, diffuses]: [bool; 2]) -> Result<(), StepError> {
         for face in Face::all::<D>() {
             let rubs = matches!(self.face(face), FaceCondition::Frictional { .. });
             if flows && rubs {
@@ -161,6 +196,15 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
             }
             if !flows && matches!(self.pores(face), PoreCondition::Pressure(_)) {
                 return Err(StepError::PressureWithoutFlow { face });
+            }
+            if let DiffusionCondition::Value(value) = self.diffusion(face) {
+                if !diffuses {
+                    return Err(StepError::ValueWithoutDiffusion { face });
+                }
+                if !value.is_finite() {
+                    let value = value.primal();
+                    return Err(StepError::DiffusingValue { face, value });
+                }
             }
         }
         Ok(())

@@ -11,7 +11,8 @@
 //! 3. `kick`: G2P of $v_p \mathrel{+}= \Delta t\sum_i\phi_i(x_p) a_i$, the FLIP update, then P2G of the
 //!    particles' new momenta;
 //! 4. `velocity`: DOF velocities from these, and the impulses of walls that rub (`contact`);
-//! 5. `drift`: G2P of position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$,
+//! 5. `diffusion`, for phases that exchange a scalar: P2G of capacities, contents and fluxes, G2P of rates;
+//! 6. `drift`: G2P of position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$,
 //!    stress by the law, volume by $\det(1+\Delta\varepsilon)$ at large strain.
 //!
 //! With a liquid that flows through the pores the same stages take both phases together (`liquid` has the
@@ -30,6 +31,7 @@ mod checkpoint;
 mod contact;
 mod critical;
 mod diagnostics;
+mod diffusion;
 mod dofs;
 mod domain;
 mod drift;
@@ -59,7 +61,7 @@ mod window;
 
 pub use critical::{CriticalStep, Mechanism};
 pub use diagnostics::{Conservation, Diagnostics, Energy};
-pub use forcing::{FaceCondition, Forcing, PoreCondition, SurfacePoint};
+pub use forcing::{DiffusionCondition, FaceCondition, Forcing, PoreCondition, SurfacePoint};
 pub use material_fields::MaterialFields;
 pub use setup::Setup;
 pub use simulation::Simulation;
@@ -109,6 +111,8 @@ where
     liquid: Dofs<T, D>,
     /// Drag of the DOFs (kg/s in 3-D), empty where no liquid flows.
     drag: Vec<T>,
+    /// What diffuses, of no DOF where nothing does.
+    diffusion: diffusion::Diffusion<T>,
     /// Of no DOF but for a liquid that flows with the particles' consistent matrices.
     joint: liquid::Joint<T, D>,
     /// What surfaces demand that the liquid does not pass.
@@ -177,6 +181,7 @@ where
             surface,
         } = setup;
         check_material(&law, &phase, &particles)?;
+        diffusion::refuse_without_capacity(&phase, &particles)?;
         domain::lay::<T, D, B, _, _>(&grid, &mut particles);
         domain::validate::<T, D, B, _, _>(&grid, &particles, |p| p)?;
         if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {
@@ -237,6 +242,7 @@ where
             dofs: parts.dofs,
             liquid: parts.liquid,
             drag: Vec::new(),
+            diffusion: diffusion::Diffusion::none(),
             joint: parts.joint,
             seal: parts.seal,
             places,
@@ -280,6 +286,9 @@ where
         if X::FROM_GRID {
             self.places.follow(basis, grid);
         }
+        if P::DIFFUSES {
+            self.diffusion = diffusion::Diffusion::new(basis.dof_count(grid));
+        }
         (self.face_dofs, self.left_out) = faces::face_dofs(basis, grid);
     }
 
@@ -288,7 +297,11 @@ where
     fn allocate(&mut self) {
         self.prepare();
         let dofs = self.dofs.mass.len();
-        let each = if P::FLOWS { [SCALARS, VECTORS] } else { [1, 1] };
+        let each = match (P::FLOWS, P::DIFFUSES) {
+            (true, _) => [SCALARS, VECTORS],
+            (false, true) => [diffusion::SCALARS, 1],
+            (false, false) => [1, 1],
+        };
         self.spans.allocate(each, R::CELLWISE, dofs);
         if self.batched() {
             let cells = self.particles.len().min(self.grid.cell_count());
@@ -363,7 +376,7 @@ where
                 return Err(StepError::StepSize { value });
             }
         }
-        forcing.suits_phase(P::FLOWS)?;
+        forcing.suits_phase([P::FLOWS, P::DIFFUSES])?;
         from_grid::refuse_walls_that_rub::<T, D, X>(forcing)?;
         faces::walls_can_be_held(forcing, &self.left_out)?;
         let mut outcome = Ok(Energy::none());
@@ -578,6 +591,7 @@ where
             + size_of::<SVector<T, D>>() * self.body_forces.capacity()
             + self.joint.bytes()
             + self.seal.bytes()
+            + self.diffusion.bytes()
             + size_of::<T>() * self.drag.len()
     }
 

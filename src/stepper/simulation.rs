@@ -6,8 +6,8 @@ use nalgebra::SVector;
 
 use super::order::Order;
 use super::{
-    Conservation, CriticalStep, Diagnostics, Energy, FaceCondition, Forcing, MaterialFields, PoreCondition,
-    Stepper,
+    Conservation, CriticalStep, Diagnostics, DiffusionCondition, Energy, FaceCondition, Forcing,
+    MaterialFields, PoreCondition, Stepper,
 };
 use crate::basis::BasisFamily;
 use crate::error::{RestoreError, StepError};
@@ -330,6 +330,9 @@ fn cast_forcing<T: Scalar, const D: usize>(forcing: &Forcing<f64, D>) -> Forcing
         result.set_face(face, condition);
         if let PoreCondition::Pressure(pressure) = forcing.pores(face) {
             result.set_pores(face, PoreCondition::Pressure(T::lit(pressure)));
+        }
+        if let DiffusionCondition::Value(value) = forcing.diffusion(face) {
+            result.set_diffusion(face, DiffusionCondition::Value(T::lit(value)));
         }
     }
     result

@@ -115,6 +115,8 @@ pub(super) enum InvalidState<T> {
     Stress(T),
     /// The pressure of the liquid in its pores is no number any more.
     Pressure(T),
+    /// The value that diffuses is no number any more.
+    Value(T),
 }
 
 impl<T: Scalar> InvalidState<T> {
@@ -132,6 +134,12 @@ impl<T: Scalar> InvalidState<T> {
                 particle,
                 name: "pore pressure",
                 value: pressure.primal(),
+            },
+            Self::Value(value) => StepError::Invalid {
+                step,
+                particle,
+                name: "value that diffuses",
+                value: value.primal(),
             },
             Self::Stress(stress) => StepError::Stress {
                 step,

@@ -43,11 +43,13 @@ where
         self.prepare();
         if !measure {
             self.kick(kick, forcing);
+            self.diffuse(dt, forcing)?;
             return self.drift(dt).map(|()| Energy::none());
         }
         let (strain, before) = (self.strain_energy(), self.velocities());
         self.kick(kick, forcing);
         let kinetic = self.kinetic_energy_across(&before);
+        self.diffuse(dt, forcing)?;
         self.drift(dt)?;
         Ok(Energy { kinetic, strain })
     }

@@ -152,6 +152,6 @@ impl<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>> Waves<'_, T, 
     }
 }
 
-fn smaller<T: Scalar>(a: CriticalStep<T>, b: CriticalStep<T>) -> CriticalStep<T> {
+pub(super) fn smaller<T: Scalar>(a: CriticalStep<T>, b: CriticalStep<T>) -> CriticalStep<T> {
     if b.step < a.step { b } else { a }
 }

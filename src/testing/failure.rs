@@ -152,6 +152,14 @@ pub enum Property {
     TransferKeepsMomentum,
     /// A velocity that is a linear function of place comes back as it was.
     LinearVelocity,
+    /// The capacity for what diffuses is positive, and proportional to mass and volume.
+    Capacity,
+    /// `add_to_value` adds to the value of a particle.
+    AddsToValue,
+    /// There is no flux without a gradient, and none towards higher values: entropy does not fall.
+    FluxOpposesGradient,
+    /// Flux over gradient is at most `diffusivity` times the capacity per volume.
+    Diffusivity,
 }
 
 impl fmt::Display for Property {
@@ -225,6 +233,12 @@ impl fmt::Display for Property {
             Self::TransferKeepsMomentum => "particles have the momentum of the DOFs",
             Self::LinearVelocity => "a linear velocity comes back from the grid as it was",
             Self::PoreStressIsWork => "what the liquid adds to the stress works as its energy grows",
+            Self::Capacity => "the capacity is positive and proportional to mass and volume",
+            Self::AddsToValue => "`add_to_value` adds to the value",
+            Self::FluxOpposesGradient => {
+                "what diffuses flows against its gradient, and without one not at all"
+            }
+            Self::Diffusivity => "flux over gradient is within the diffusivity",
         };
         f.write_str(words)
     }

@@ -35,6 +35,12 @@ const ANGLE: f64 = 0.5;
 /// `liquid_stiffness` is pressure over change of volume; the energy of the liquid is the work of its pressure,
 /// and what the liquid adds to the stress does the same work.
 ///
+/// Of one that `DIFFUSES` also, with values from one below that of no data to one above: a capacity that is
+/// positive and proportional to mass and volume; `add_to_value` adds to the value, what was taken in over the
+/// capacity; an increment of zero leaves the value; no flux without a gradient, and none towards higher
+/// values, so that entropy does not fall; flux over gradient within `diffusivity`, which the stable step
+/// trusts.
+///
 /// A phase that says `COUPLED = true` and does nothing passes: it is slow only.
 ///
 /// # Errors
@@ -59,6 +65,12 @@ pub fn check_phase<T: Scalar, const D: usize, P: Phase<T, D>>(
         in_proportion(phase, sample)?;
         flow(phase, sample)?;
         work(phase, sample)?;
+    }
+    if P::DIFFUSES {
+        let particles = warmed(phase, sample);
+        capacity(phase, sample, &particles)?;
+        adds_to_value(phase, &particles)?;
+        flux(phase, sample, &particles)?;
     }
     Ok(())
 }
@@ -200,6 +212,10 @@ fn zero_increment<T: Scalar, const D: usize, P: Phase<T, D>>(
                 new.pressure,
                 allowed,
             )?;
+        }
+        if P::DIFFUSES {
+            let (old, new) = (phase.value(&before), phase.value(&after));
+            near(property, || Place::Everywhere, old, new, old.abs() * round_off())?;
         }
     }
     Ok(())
@@ -413,6 +429,101 @@ fn work<T: Scalar, const D: usize, P: Phase<T, D>>(
             };
             near(Property::LiquidEnergy, place, by_pressure, energy, allowed)?;
             near(Property::PoreStressIsWork, place, energy, by_stress, allowed)?;
+        }
+    }
+    Ok(())
+}
+
+/// Data without and with strain, and with more or less of what diffuses.
+fn warmed<T: Scalar, const D: usize, P: Phase<T, D>>(phase: &P, sample: &PhaseSample<T>) -> Vec<P::Particle> {
+    let strains = [SMatrix::zeros()].into_iter().chain(increments::<T, D>());
+    let changes = [0.0, 1.0, -1.0].map(T::lit);
+    strains
+        .flat_map(|strain| changes.map(|change| (strain * sample.strain, change)))
+        .map(|(strain, change)| {
+            let mut particle = strained(phase, &strain, STEPS);
+            if !change.is_zero() {
+                phase.add_to_value(change, &mut particle);
+            }
+            particle
+        })
+        .collect()
+}
+
+fn capacity<T: Scalar, const D: usize, P: Phase<T, D>>(
+    phase: &P,
+    sample: &PhaseSample<T>,
+    particles: &[P::Particle],
+) -> Result<(), Failure> {
+    let everywhere = || Place::Everywhere;
+    particles.iter().try_for_each(|particle| {
+        let of = |volume| phase.capacity(sample.density * volume, volume, particle);
+        let whole = of(T::one());
+        at_least(Property::Capacity, everywhere, T::default_epsilon(), whole)?;
+        [0.001, 0.3, 7.0].map(T::lit).into_iter().try_for_each(|volume| {
+            let (expected, found) = (whole * volume, of(volume));
+            near(
+                Property::Capacity,
+                everywhere,
+                expected,
+                found,
+                expected * round_off(),
+            )
+        })
+    })
+}
+
+/// What a particle takes in over its capacity is the change of its value, in one go and in two.
+fn adds_to_value<T: Scalar, const D: usize, P: Phase<T, D>>(
+    phase: &P,
+    particles: &[P::Particle],
+) -> Result<(), Failure> {
+    particles.iter().try_for_each(|particle| {
+        let (mut warmer, mut expected) = (*particle, phase.value(particle));
+        let mut largest = expected.abs();
+        [0.75, -0.5].map(T::lit).into_iter().try_for_each(|change| {
+            phase.add_to_value(change, &mut warmer);
+            expected += change;
+            largest = largest.max(expected.abs()) + change.abs();
+            let found = phase.value(&warmer);
+            near(
+                Property::AddsToValue,
+                || Place::Everywhere,
+                expected,
+                found,
+                largest * round_off(),
+            )
+        })
+    })
+}
+
+fn flux<T: Scalar, const D: usize, P: Phase<T, D>>(
+    phase: &P,
+    sample: &PhaseSample<T>,
+    particles: &[P::Particle],
+) -> Result<(), Failure> {
+    let axes = (0..D).map(|axis| SVector::<T, D>::from_fn(|a, _| T::count(usize::from(a == axis))));
+    let mixed = SVector::from_fn(|a, _| T::lit([0.5, -1.0, 0.25][a % 3]));
+    let directions: Vec<SVector<T, D>> = axes.chain([mixed]).collect();
+    let volume = T::one();
+    for particle in particles {
+        let capacity = phase.capacity(sample.density, volume, particle);
+        let conductivity = phase.diffusivity(sample.density, volume, particle) * capacity / volume;
+        let at_rest = phase.flux(&SVector::zeros(), particle).norm();
+        let (opposes, everywhere) = (Property::FluxOpposesGradient, || Place::Everywhere);
+        near(opposes, everywhere, T::zero(), at_rest, T::zero())?;
+        for direction in &directions {
+            // Of usual size, and of either sign: a flux need not be linear.
+            for size in [1.0, -1.0, 1e3].map(T::lit) {
+                let gradient = direction * size;
+                let place = || Place::Component(direction.iamax(), direction.iamax());
+                let flux = phase.flux(&gradient, particle);
+                let towards = -flux.dot(&gradient);
+                let round_off = gradient.norm() * flux.norm() * round_off();
+                at_least(opposes, place, -round_off, towards)?;
+                let most = conductivity * gradient.norm() * (T::one() + self::round_off());
+                at_least(Property::Diffusivity, place, flux.norm(), most)?;
+            }
         }
     }
     Ok(())

@@ -12,6 +12,7 @@
 //! | `drift` | G2P of velocities and their gradients: positions, and what laws are asked for |
 //! | `gather` | G2P of velocities with their moments, for transfers from the grid |
 //! | `fits` | P2G from polynomials fitted in each cell |
+//! | `scalars` | G2P of a scalar field and of its gradient |
 //! | `pairs` | the consistent mass matrix |
 //!
 //! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs,
@@ -35,6 +36,7 @@ mod p2g;
 mod pairs;
 mod places;
 mod rows;
+mod scalars;
 mod sums;
 
 pub(crate) use drift::{Drift, Outcome, drift};
@@ -47,6 +49,7 @@ pub(crate) use kick::{Kick, Momentum, kick};
 pub(crate) use p2g::{Contribution, Parts, Sum, p2g};
 pub(crate) use pairs::{sum_pairs, sums_apply};
 pub(crate) use places::DofPlaces;
+pub(crate) use scalars::{ScalarField, g2p};
 
 use nalgebra::SVector;
 

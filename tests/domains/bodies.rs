@@ -88,18 +88,16 @@ where
     R: Reconstruction<f64, D>,
 {
     let states = vec![Default::default(); particles.len()];
-    Stepper::new(Setup {
+    Stepper::new(Setup::new(
         grid,
         basis,
         reconstruction,
-        law: NeoHookean {
+        NeoHookean {
             moduli: Moduli::from_young(20.0, 0.3).unwrap(),
         },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
-        particles: particles.with_states(states),
-        surface: Vec::new(),
-    })
+        OnePhase,
+        particles.with_states(states),
+    ))
     .unwrap()
 }
 

@@ -187,16 +187,14 @@ fn the_deformation_gradient_carries_the_edges() {
     fn run<const D: usize>(cells: usize) {
         let (grid, all) = particles::<D>(cells, 2);
         let count = all.len();
-        let mut stepper = Stepper::new(Setup {
+        let mut stepper = Stepper::new(Setup::new(
             grid,
-            basis: Corners,
-            reconstruction: Shepard,
-            law: Dust,
-            phase: OnePhase,
-            velocity_mass: VelocityMass::Lumped,
-            particles: all.with_states(vec![Gradient::default(); count]),
-            surface: Vec::new(),
-        })
+            Corners,
+            Shepard,
+            Dust,
+            OnePhase,
+            all.with_states(vec![Gradient::default(); count]),
+        ))
         .unwrap();
         for _ in 0..60 {
             stepper.step(0.02, &Forcing::none()).unwrap();

@@ -36,18 +36,16 @@ fn a_bar_in_balance_rests_between_walls() {
         .collect();
     let mut particles = Particles::at_rest(&points, 1.0);
     particles.stress.iter_mut().for_each(|stress| stress[0] = -3.0);
-    let mut stepper = Stepper::new(Setup {
+    let mut stepper = Stepper::new(Setup::new(
         grid,
-        basis: Gimp,
-        reconstruction: Shepard,
-        law: LinearElastic {
+        Gimp,
+        Shepard,
+        LinearElastic {
             moduli: Moduli::uniaxial(10.0).unwrap(),
         },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
+        OnePhase,
         particles,
-        surface: Vec::new(),
-    })
+    ))
     .unwrap();
     let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
     let hold = |forcing: Forcing<f64, 1>, end| forcing.with_face(end, FaceCondition::fixed());
@@ -137,14 +135,14 @@ fn steppers_are_the_same_by_all_ways_and_keep_momentum() {
 fn so_are_two_phases() {
     fn run<B: BasisFamily<f64, 1>, R: Reconstruction<f64, 1>>(basis: B, reconstruction: R) -> Vec<Vec<f64>> {
         let (grid, particles) = particles::<1>(10, 4);
-        let mut stepper = Stepper::new(Setup {
+        let mut stepper = Stepper::new(Setup::new(
             grid,
             basis,
             reconstruction,
-            law: LinearElastic {
+            LinearElastic {
                 moduli: Moduli::uniaxial(20.0).unwrap(),
             },
-            phase: TwoPhase {
+            TwoPhase {
                 porosity: 0.4,
                 solid_density: 2.0,
                 liquid_density: 1.0,
@@ -154,10 +152,8 @@ fn so_are_two_phases() {
                 gravity: 10.0,
                 drag: Default::default(),
             },
-            velocity_mass: VelocityMass::Lumped,
-            particles: particles.into_cast(),
-            surface: Vec::new(),
-        })
+            particles.into_cast(),
+        ))
         .unwrap();
         for _ in 0..40 {
             stepper.step(0.005, &Forcing::none()).unwrap();

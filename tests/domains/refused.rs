@@ -24,18 +24,16 @@ where
     B: materialpoint::basis::BasisFamily<f64, D>,
     R: Reconstruction<f64, D>,
 {
-    Stepper::new(Setup {
+    Stepper::new(Setup::new(
         grid,
         basis,
         reconstruction,
-        law: LinearElastic {
+        LinearElastic {
             moduli: Moduli::from_young(1.0, 0.2).unwrap(),
         },
-        phase: OnePhase,
-        velocity_mass: VelocityMass::Lumped,
+        OnePhase,
         particles,
-        surface: Vec::new(),
-    })
+    ))
     .map(|_| ())
 }
 

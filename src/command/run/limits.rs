@@ -15,6 +15,7 @@ use materialpoint::stepper::Mechanism;
 pub fn mechanism(scene: &Scene, mechanism: Mechanism) -> String {
     let wave = match (mechanism, scene.material.phases) {
         (Mechanism::Drag, _) => return "the drag between solid and liquid (explicit)".to_owned(),
+        (Mechanism::Diffusion, _) => return "diffusion from particle to particle (explicit)".to_owned(),
         (Mechanism::Wave, Phases::One { .. }) => "an elastic wave",
         (Mechanism::Wave, Phases::Two(_)) => "a compression wave of solid and liquid",
     };
@@ -39,7 +40,7 @@ pub fn mechanism(scene: &Scene, mechanism: Mechanism) -> String {
 /// What helps besides a smaller step: the end of a sentence.
 fn remedy(mechanism: Mechanism) -> &'static str {
     match mechanism {
-        Mechanism::Wave => "",
+        Mechanism::Wave | Mechanism::Diffusion => "",
         Mechanism::Drag => ", or material.drag = \"implicit\", which the drag does not limit",
     }
 }

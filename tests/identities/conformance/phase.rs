@@ -296,10 +296,131 @@ fn verdict<const COUPLED: bool, const FLOWS: bool>(slip: Slip) -> Option<Propert
     both[0]
 }
 
+/// Slips in a phase that diffuses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Leak {
+    None,
+    /// The capacity per volume.
+    CapacityPerVolume,
+    /// A capacity that takes in nothing.
+    NoCapacity,
+    /// The change replaces the value.
+    Replaces,
+    /// Twice the change is taken in.
+    Twice,
+    /// Heat is lost with each call.
+    Decays,
+    /// The flux along the gradient.
+    Sign,
+    /// A flux without a gradient.
+    Drifts,
+    /// A flux across the gradient that is larger along it than against it.
+    Skew,
+    /// The conductivity where the diffusivity is asked for, which is a part of it.
+    DiffusivityPerMass,
+    /// Said to be as slow as at the coldest.
+    Coldest,
+}
+
+const LEAKS: [(Leak, Property); 10] = [
+    (Leak::CapacityPerVolume, Property::Capacity),
+    (Leak::NoCapacity, Property::Capacity),
+    (Leak::Replaces, Property::AddsToValue),
+    (Leak::Twice, Property::AddsToValue),
+    (Leak::Decays, Property::ZeroIncrement),
+    (Leak::Sign, Property::FluxOpposesGradient),
+    (Leak::Drifts, Property::FluxOpposesGradient),
+    (Leak::Skew, Property::FluxOpposesGradient),
+    (Leak::DiffusivityPerMass, Property::Diffusivity),
+    (Leak::Coldest, Property::Diffusivity),
+];
+
+/// Heat whose conductivity grows with the temperature, and a slip.
+#[derive(Clone, Copy, Debug)]
+struct Leaking(Leak);
+
+const SPECIFIC_HEAT: f64 = 500.0;
+
+impl Leaking {
+    fn conductivity(temperature: f64) -> f64 {
+        40.0 * (1.0 + 0.1 * temperature)
+    }
+}
+
+impl<const D: usize> Phase<f64, D> for Leaking {
+    const COUPLED: bool = true;
+    const DIFFUSES: bool = true;
+    type Particle = f64;
+
+    fn total_stress(&self, effective: &SMatrix<f64, D, D>, temperature: &f64) -> SMatrix<f64, D, D> {
+        effective - SMatrix::identity() * (1e4 * temperature)
+    }
+
+    fn update(&self, step: &PhaseStep<'_, f64, D>, temperature: &mut f64) {
+        *temperature -= 3.0 * step.solid.trace();
+        if self.0 == Leak::Decays {
+            *temperature *= 1.0 - 1e-9;
+        }
+    }
+
+    fn capacity(&self, mass: f64, volume: f64, _temperature: &f64) -> f64 {
+        match self.0 {
+            Leak::CapacityPerVolume => SPECIFIC_HEAT * mass / volume,
+            Leak::NoCapacity => 0.0,
+            _ => SPECIFIC_HEAT * mass,
+        }
+    }
+
+    fn value(&self, temperature: &f64) -> f64 {
+        *temperature
+    }
+
+    fn add_to_value(&self, change: f64, temperature: &mut f64) {
+        match self.0 {
+            Leak::Replaces => *temperature = change,
+            Leak::Twice => *temperature += 2.0 * change,
+            _ => *temperature += change,
+        }
+    }
+
+    fn flux(&self, gradient: &SVector<f64, D>, temperature: &f64) -> SVector<f64, D> {
+        let flux = -gradient * Self::conductivity(*temperature);
+        match self.0 {
+            Leak::Sign => -flux,
+            Leak::Drifts => flux.add_scalar(1e-3),
+            Leak::Skew => SVector::from_fn(|a, _| if a == 0 { flux[0] } else { -0.1 * flux[a] }),
+            _ => flux,
+        }
+    }
+
+    fn diffusivity(&self, mass: f64, volume: f64, temperature: &f64) -> f64 {
+        match self.0 {
+            Leak::DiffusivityPerMass => Self::conductivity(*temperature) / (SPECIFIC_HEAT * mass * mass),
+            Leak::Coldest => Self::conductivity(-1.1) * volume / (SPECIFIC_HEAT * mass),
+            _ => Self::conductivity(*temperature) * volume / (SPECIFIC_HEAT * mass),
+        }
+    }
+}
+
+/// The same of the plane and of space.
+fn leak(slip: Leak) -> Option<Property> {
+    let plane = check_phase::<f64, 2, _>(&Leaking(slip), &sample());
+    let space = check_phase::<f64, 3, _>(&Leaking(slip), &sample());
+    let both = [plane, space].map(|outcome| outcome.err().map(|failure| failure.property));
+    assert_eq!(both[0], both[1], "{slip:?}");
+    both[0]
+}
+
+#[test]
+fn a_phase_that_diffuses_without_a_slip_passes() {
+    assert_eq!(leak(Leak::None), None);
+}
+
 /// All mistakes of this file.
 pub(super) fn mistakes() -> Vec<Planted> {
     let mut all = planted("silent phase", SILENT, verdict::<false, false>);
     all.extend(planted("flowing phase", FLOWING, verdict::<true, true>));
+    all.extend(planted("diffusing phase", LEAKS, leak));
     all
 }
 

@@ -184,7 +184,12 @@ fn put_schedule(out: &mut impl Write, schedule: &Schedule) -> io::Result<()> {
 
 fn put_limit(out: &mut impl Write, limit: CriticalStep<f64>) -> io::Result<()> {
     put_number(out, limit.step)?;
-    put_count(out, usize::from(limit.mechanism == Mechanism::Drag))
+    let mechanism = match limit.mechanism {
+        Mechanism::Wave => 0,
+        Mechanism::Drag => 1,
+        Mechanism::Diffusion => 2,
+    };
+    put_count(out, mechanism)
 }
 
 fn take_limit(from: &mut impl Read) -> io::Result<CriticalStep<f64>> {
@@ -192,7 +197,8 @@ fn take_limit(from: &mut impl Read) -> io::Result<CriticalStep<f64>> {
         step: take_number(from)?,
         mechanism: match take_count(from)? {
             0 => Mechanism::Wave,
-            _ => Mechanism::Drag,
+            1 => Mechanism::Drag,
+            _ => Mechanism::Diffusion,
         },
     })
 }
