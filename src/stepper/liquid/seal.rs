@@ -124,6 +124,9 @@ impl<T: Scalar> Components<T> {
     }
 }
 
+/// Calls what it is given for DOFs with values.
+type Visit<'a, T> = dyn FnMut(&mut dyn FnMut(usize, T)) + 'a;
+
 /// The points of the sealed surfaces.
 #[derive(Clone, Debug)]
 struct Points<T> {
@@ -323,12 +326,7 @@ impl<T: Scalar> Seal<T> {
 
     /// Adds a point at `place` that stands for `area` of the surface; `visit` calls what it is given for each
     /// DOF with its value there.
-    pub(super) fn add_point<const D: usize>(
-        &mut self,
-        place: &Place<D>,
-        area: T,
-        visit: &mut dyn FnMut(&mut dyn FnMut(usize, T)),
-    ) {
+    pub(super) fn add_point<const D: usize>(&mut self, place: &Place<D>, area: T, visit: &mut Visit<'_, T>) {
         let Points {
             ends,
             functions,
