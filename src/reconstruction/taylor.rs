@@ -323,6 +323,23 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         four
     }
 
+    /// [`Reconstruction::fit_batch`] likewise.
+    #[inline(always)]
+    fn fit_few<K: Packs<T>, Q: Field<T>, const C: usize>(
+        &self,
+        k: K,
+        place: (&Cloud<'_, T, D>, Range<usize>),
+        conserve: bool,
+        kept: Kept<'_, T>,
+        value: &impl Values<T, Q>,
+        sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
+    ) -> BatchStatus {
+        let mut coefficients = [[k.splat(T::zero()); C]; NB];
+        let four = self.fit_four::<K, Q, C>(k, place, conserve, kept, value, &mut coefficients);
+        hand_over(k, &coefficients, Q::COMPONENTS, sink);
+        four
+    }
+
     /// Coefficients of the fits of four cells. Out of line: it knows nothing of a basis, and is compiled once
     /// for all.
     #[inline(never)]
@@ -463,6 +480,23 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
                 fits
             },
         )
+    }
+}
+
+/// Hands over the coefficients of each function.
+#[inline(always)]
+pub(super) fn hand_over<T: Scalar, K: Packs<T>, const NB: usize, const C: usize>(
+    k: K,
+    coefficients: &Rights<K::V, NB, C>,
+    components: usize,
+    mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
+) {
+    for n in 0..NB {
+        let mut values = [k.splat(T::zero()); MOST_COMPONENTS];
+        for q in 0..components {
+            values[q] = coefficients[n][q];
+        }
+        sink(n, &values);
     }
 }
 
@@ -677,6 +711,31 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
             self.integrate_few::<K, Q, FEW_COMPONENTS>(k, (cloud, cells), conserve, kept, value, sink)
         } else {
             self.integrate_few::<K, Q, MOST_COMPONENTS>(k, (cloud, cells), conserve, kept, value, sink)
+        }
+    }
+
+    const FITS_TAYLOR: bool = true;
+
+    fn weighted_line(&self) -> impl Iterator<Item = (T, T)> {
+        self.rule.weighted_line()
+    }
+
+    #[inline(always)]
+    fn fit_batch<K: Packs<T>, Q: Field<T>>(
+        &self,
+        k: K,
+        place: (&Cloud<'_, T, D>, Range<usize>),
+        conserve: bool,
+        kept: Kept<'_, T>,
+        value: &impl Values<T, Q>,
+        sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
+    ) -> BatchStatus {
+        if const { are_few::<T, Q, D>() && Q::COMPONENTS == 1 } {
+            self.fit_few::<K, Q, 1>(k, place, conserve, kept, value, sink)
+        } else if const { are_few::<T, Q, D>() } {
+            self.fit_few::<K, Q, FEW_COMPONENTS>(k, place, conserve, kept, value, sink)
+        } else {
+            self.fit_few::<K, Q, MOST_COMPONENTS>(k, place, conserve, kept, value, sink)
         }
     }
 

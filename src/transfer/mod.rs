@@ -10,7 +10,7 @@
 //! | [`p2g`] | `m_i = sum_p m_p phi_i(x_p)`, forces, momenta: what a [`Contribution`] says |
 //! | [`kick`](fn@kick) | G2P of accelerations, then P2G of the new momenta in the same sweep |
 //! | [`drift`] | G2P of velocities and their gradients: positions, and the increments that laws are asked for |
-//! | [`fits`] | P2G from polynomials fitted in each cell |
+//! | [`fits`] | P2G from polynomials fitted in each cell, by [`polynomials`] where it can |
 //! | [`pairs`] | the consistent mass matrix |
 //!
 //! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs,
@@ -29,6 +29,7 @@ mod kick;
 mod lines;
 mod p2g;
 mod pairs;
+mod polynomials;
 mod rows;
 mod sums;
 
