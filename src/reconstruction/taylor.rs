@@ -22,9 +22,32 @@ use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each};
 use crate::taylor::{
-    BatchSums, CellFit, FEW_COMPONENTS, FourFits, Gram, MOST_COMPONENTS, Rights, SharedFactor, are_few,
-    default_tolerance, kept, taylor_functions,
+    BatchSums, CellFit, FourFits, Gram, MOST_COMPONENTS, Rights, SharedFactor, default_tolerance, kept,
+    taylor_functions,
 };
+
+/// Calls with the least number `C` of those that arrays for so many components may have: what is not used of
+/// an array is written all the same.
+macro_rules! with_room {
+    ($components:expr, |$c:ident| $call:expr) => {
+        if const { $components <= 1 } {
+            const $c: usize = 1;
+            $call
+        } else if const { $components <= 2 } {
+            const $c: usize = 2;
+            $call
+        } else if const { $components <= 4 } {
+            const $c: usize = 4;
+            $call
+        } else if const { $components <= 6 } {
+            const $c: usize = 6;
+            $call
+        } else {
+            const $c: usize = MOST_COMPONENTS;
+            $call
+        }
+    };
+}
 
 /// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor
 /// functions through the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3
@@ -705,13 +728,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> BatchStatus {
-        if const { are_few::<T, Q, D>() && Q::COMPONENTS == 1 } {
-            self.integrate_few::<K, Q, 1>(k, (cloud, cells), conserve, kept, value, sink)
-        } else if const { are_few::<T, Q, D>() } {
-            self.integrate_few::<K, Q, FEW_COMPONENTS>(k, (cloud, cells), conserve, kept, value, sink)
-        } else {
-            self.integrate_few::<K, Q, MOST_COMPONENTS>(k, (cloud, cells), conserve, kept, value, sink)
-        }
+        with_room!(Q::COMPONENTS, |C| self.integrate_few::<K, Q, C>(k, (cloud, cells), conserve, kept, value, sink))
     }
 
     const FITS_TAYLOR: bool = true;
@@ -730,13 +747,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> BatchStatus {
-        if const { are_few::<T, Q, D>() && Q::COMPONENTS == 1 } {
-            self.fit_few::<K, Q, 1>(k, place, conserve, kept, value, sink)
-        } else if const { are_few::<T, Q, D>() } {
-            self.fit_few::<K, Q, FEW_COMPONENTS>(k, place, conserve, kept, value, sink)
-        } else {
-            self.fit_few::<K, Q, MOST_COMPONENTS>(k, place, conserve, kept, value, sink)
-        }
+        with_room!(Q::COMPONENTS, |C| self.fit_few::<K, Q, C>(k, place, conserve, kept, value, sink))
     }
 
     #[cold]

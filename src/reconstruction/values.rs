@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::field::{Field, MassMomentum, Symmetric};
 use crate::scalar::Scalar;
-use crate::simd::{LANES, Packs, each, in_lanes};
+use crate::simd::{LANES, Packs, each, in_lanes, inlined};
 
 /// A field at the particles, by their numbers: any function of those, or what knows more ways to be asked.
 pub trait Values<T: Scalar, Q: Field<T>> {
@@ -19,6 +19,17 @@ pub trait Values<T: Scalar, Q: Field<T>> {
             k,
             #[inline(always)]
             |l| self.at(first + l),
+        )
+    }
+
+    /// The same of any four particles.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn lanes<K: Packs<T>, const C: usize>(&self, k: K, particles: &[usize; LANES]) -> [K::V; C] {
+        lanes_of(
+            k,
+            #[inline(always)]
+            |l| self.at(particles[l]),
         )
     }
 }
@@ -120,6 +131,29 @@ impl<T: Scalar, const D: usize> Values<T, MassMomentum<T, D>> for Densities<'_, 
         let mut components = [density; C];
         for a in 0..D.min(C - 1) {
             components[1 + a] = four_components::<T, K, D>(k, self.velocities, first, a) * density;
+        }
+        components
+    }
+
+    #[inline(always)]
+    fn lanes<K: Packs<T>, const C: usize>(&self, k: K, particles: &[usize; LANES]) -> [K::V; C] {
+        let numbers = inlined(
+            #[inline(always)]
+            |of: &[T]| {
+                k.pack(in_lanes(
+                    #[inline(always)]
+                    |l| of[particles[l]],
+                ))
+            },
+        );
+        let density = numbers(self.masses) / numbers(self.volumes);
+        let mut components = [density; C];
+        for a in 0..D.min(C - 1) {
+            let velocity = k.pack(in_lanes(
+                #[inline(always)]
+                |l| self.velocities[particles[l]][a],
+            ));
+            components[1 + a] = velocity * density;
         }
         components
     }
