@@ -22,8 +22,8 @@ use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each};
 use crate::taylor::{
-    BatchSums, CellFit, FourFits, Gram, MOST_COMPONENTS, Rights, SharedFactor, default_tolerance, kept,
-    taylor_functions,
+    BatchSums, CellFit, FourFits, Gram, MOST_COMPONENTS, Rights, SharedFactor, default_tolerance,
+    keep_products, kept, kept_products, taylor_functions,
 };
 
 /// Calls with the least number `C` of those that arrays for so many components may have: what is not used of
@@ -446,6 +446,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         let shared = SharedFactor::new::<T, K, D>(k, &sums.gram, &group.counts, self.tolerance);
         if !kept.numbers.is_empty() {
             SharedFactor::keep::<T, K>(shared.as_ref(), k, kept.numbers);
+            if shared.is_none() {
+                keep_products::<T, K, NB>(k, &sums.gram, kept.numbers);
+            }
         }
         match shared {
             Some(factor) => full_fits(k, &factor, true, &sums.right, Q::COMPONENTS),
@@ -470,7 +473,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
             false => None,
         };
         let Some(factor) = shared else {
-            return self.fit_conserved_anew::<K, Q, C>(k, (cloud, cells), value);
+            return self.fit_conserved_anew::<K, Q, C>(k, (cloud, cells), kept, value);
         };
         let mut sums: BatchSums<K::V, NB, C> =
             group.sums::<ConservedValues, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes);
@@ -489,14 +492,24 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         &self,
         k: K,
         (cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
+        kept: Kept<'_, T>,
         value: &impl Values<T, Q>,
     ) -> FourFits<K::V, NB, C> {
         k.run(
             #[inline(always)]
             move || {
                 let group = CellGroup::new(cloud, cells.clone());
-                let mut sums: BatchSums<K::V, NB, C> =
-                    group.sums::<Conserved, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes);
+                let products = match kept.fresh {
+                    true => kept_products::<T, K, NB>(k, kept.numbers),
+                    false => None,
+                };
+                let mut sums: BatchSums<K::V, NB, C> = match products {
+                    Some(gram) => BatchSums {
+                        gram,
+                        ..group.sums::<ConservedValues, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes)
+                    },
+                    None => group.sums::<Conserved, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes),
+                };
                 let mean = sums.take_out_mean::<T, K>(k, cloud.grid.cell_volume(), Q::COMPONENTS);
                 let mut fits = sums.fit::<T, K, D>(k, 1, &group.counts, self.tolerance, Q::COMPONENTS);
                 fits.coefficients[0] = mean;

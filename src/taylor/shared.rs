@@ -119,6 +119,9 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
     where
         V: Number<T>,
     {
+        if counts[0].min(counts[1]).min(counts[2].min(counts[3])) < NB {
+            return None;
+        }
         let (zero, one) = (k.splat(T::zero()), k.splat(T::one()));
         let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
         let share = k.splat(T::lit(GRAM_SHARE));
@@ -151,8 +154,7 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
             with_constant[n] = gram[n][0];
         }
         let (half, two) = (k.splat(T::one() / T::lit(2.0)), k.splat(T::lit(2.0)));
-        let are_enough = counts[0] >= NB && counts[1] >= NB && counts[2] >= NB && counts[3] >= NB;
-        (are_enough && k.are_between(full, half, two)).then_some(Self {
+        k.are_between(full, half, two).then_some(Self {
             inverse,
             with_constant,
         })
@@ -190,7 +192,7 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
     pub(crate) fn kept<T: Scalar, K: Packs<T, V = V>>(k: K, kept: &[[T; LANES]]) -> Option<Self> {
         let (there, numbers) = kept.split_first()?;
         let numbers = numbers.get(..NB * (NB + 1) / 2 + NB)?;
-        if there[0].is_zero() {
+        if there[0] != T::one() {
             return None;
         }
         let zero = k.splat(T::zero());
@@ -268,6 +270,62 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
         );
     }
 }
+
+/// Keeps the Gram matrices of cells that share no factor.
+#[inline(always)]
+pub(crate) fn keep_products<T: Scalar, K: Packs<T>, const NB: usize>(
+    k: K,
+    gram: &Products<K::V, NB>,
+    kept: &mut [[T; LANES]],
+) {
+    let Some((first, kept)) = kept.split_first_mut() else { return };
+    let Some(kept) = kept.get_mut(..NB * (NB + 1) / 2) else { return };
+    *first = [T::lit(PRODUCTS); LANES];
+    unrolled::<NB>(
+        #[inline(always)]
+        |m| {
+            unrolled::<NB>(
+                #[inline(always)]
+                |j| {
+                    if j <= m {
+                        kept[m * (m + 1) / 2 + j] = k.array(gram[m][j]);
+                    }
+                },
+            );
+        },
+    );
+}
+
+/// Gram matrices, if they were kept.
+#[inline(always)]
+pub(crate) fn kept_products<T: Scalar, K: Packs<T>, const NB: usize>(
+    k: K,
+    kept: &[[T; LANES]],
+) -> Option<Products<K::V, NB>> {
+    let (first, numbers) = kept.split_first()?;
+    let numbers = numbers.get(..NB * (NB + 1) / 2)?;
+    if first[0] != T::lit(PRODUCTS) {
+        return None;
+    }
+    let mut gram = [[k.splat(T::zero()); NB]; NB];
+    unrolled::<NB>(
+        #[inline(always)]
+        |m| {
+            unrolled::<NB>(
+                #[inline(always)]
+                |j| {
+                    if j <= m {
+                        gram[m][j] = k.pack(numbers[m * (m + 1) / 2 + j]);
+                    }
+                },
+            );
+        },
+    );
+    Some(gram)
+}
+
+/// What is kept first where the rest are products: one tells that they are a factor, zero that there are none.
+const PRODUCTS: f64 = 2.0;
 
 /// Where row `m` of what is kept begins.
 #[inline(always)]
