@@ -92,7 +92,7 @@ pub(crate) const fn symmetric_component<const D: usize>(row: usize, column: usiz
 
 /// The place of a component.
 #[inline(always)]
-const fn symmetric_place<const D: usize>(component: usize) -> (usize, usize) {
+pub(crate) const fn symmetric_place<const D: usize>(component: usize) -> (usize, usize) {
     match (component < D, component - if component < D { 0 } else { D }) {
         (true, axis) => (axis, axis),
         (false, 0) => (0, 1),

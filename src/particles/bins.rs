@@ -112,6 +112,9 @@ impl<const D: usize> Bins<D> {
             return;
         }
         self.lists_are_stale = false;
+        if self.are_in_order && self.list_in_order(grid) {
+            return;
+        }
         self.occupied.clear();
         if self.start.len() != grid.cell_count() + 1 {
             self.start = vec![0; grid.cell_count() + 1];
@@ -138,6 +141,31 @@ impl<const D: usize> Bins<D> {
         // Filling advanced every start to its cell's end: shift them back.
         self.start.rotate_right(1);
         self.start[0] = 0;
+    }
+
+    /// The same in one pass where particles that were in the order of their cells still are; returns whether
+    /// they are.
+    fn list_in_order<T: Scalar>(&mut self, grid: &Grid<T, D>) -> bool {
+        if self.start.len() != grid.cell_count() + 1 {
+            return false;
+        }
+        self.occupied.clear();
+        // Cells below this one have their starts.
+        let mut next = 0;
+        for (p, cell) in self.cell_of.iter().enumerate() {
+            let number = grid.linear(cell);
+            if number + 1 == next {
+                continue;
+            }
+            if number < next {
+                return false;
+            }
+            self.start[next..=number].fill(p as u32);
+            self.occupied.push(number as u32);
+            next = number + 1;
+        }
+        self.start[next..].fill(self.cell_of.len() as u32);
+        true
     }
 
     /// Number of particles.

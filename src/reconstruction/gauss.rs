@@ -16,6 +16,8 @@ const LEAST_DENSITY: f64 = 1e-2;
 #[derive(Clone, Debug)]
 pub(super) struct GaussRule<T, const D: usize, const NB: usize> {
     nodes: Vec<Node<T, D, NB>>,
+    /// Points along an axis with their weights, as shares of it.
+    line: Vec<(T, T)>,
     /// Largest size of each function at the points.
     bounds: SVector<T, NB>,
 }
@@ -33,12 +35,13 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
     pub(super) fn new(n: usize) -> Self {
         let line = gauss_legendre::<T>(n.max(1));
         let two = T::lit(2.0);
+        let line: Vec<_> = line.into_iter().map(|(x, w)| (x, w / two)).collect();
         let nodes = (0..line.len().pow(D as u32)).map(|mut index| {
             let mut share = T::one();
             let s = SVector::from_fn(|_, _| {
                 let (x, w) = line[index % line.len()];
                 index /= line.len();
-                share *= w / two;
+                share *= w;
                 x
             });
             let psi = taylor_functions(&s);
@@ -49,7 +52,7 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
             let sizes = nodes.iter().map(|node: &Node<T, D, NB>| node.psi[k].abs());
             sizes.fold(T::zero(), T::max)
         });
-        Self { nodes, bounds }
+        Self { nodes, line, bounds }
     }
 
     /// Draws the fit of a density towards its mean, with all fields that are fitted beside it (so that the
@@ -133,6 +136,11 @@ impl<T: Scalar, const D: usize, const NB: usize> GaussRule<T, D, NB> {
     pub(super) fn line(&self) -> impl Iterator<Item = T> {
         let beyond = |node: &&Node<T, D, NB>| (1..D).all(|axis| node.s[axis] == self.nodes[0].s[axis]);
         self.nodes.iter().take_while(beyond).map(|node| node.s[0])
+    }
+
+    /// The same with their weights, as shares of the axis.
+    pub(super) fn weighted_line(&self) -> impl Iterator<Item = (T, T)> {
+        self.line.iter().copied()
     }
 
     /// Streams polynomials over four cells of the given volume: the number of the point, then the values

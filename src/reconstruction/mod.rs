@@ -257,6 +257,10 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     /// conserve, and takes up again where it does.
     const KEPT: usize = 0;
 
+    /// Whether [`Reconstruction::fit_batch`] hands over coefficients of Taylor functions.
+    #[doc(hidden)]
+    const FITS_TAYLOR: bool = false;
+
     /// Whether [`Reconstruction::integrate_batch`] wants what [`Reconstruction::prepare`] and
     /// [`Reconstruction::fit_field`] took in.
     const NON_LOCAL: bool = false;
@@ -346,7 +350,30 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         BatchStatus::default()
     }
 
-    /// The same in one cell that is given by its number, point by point; returns whether it was fitted with
+    /// What [`Reconstruction::integrate_batch`] streams, before it is evaluated at points: the number of a
+    /// function of [`mod@crate::taylor`] and the components of its coefficient, each function once.
+    #[doc(hidden)]
+    fn fit_batch<K: Packs<T>, Q: Field<T>>(
+        &self,
+        _k: K,
+        _batch: (&Cloud<'_, T, D>, Range<usize>),
+        _conserve: bool,
+        _kept: Kept<'_, T>,
+        _value: &impl Values<T, Q>,
+        _sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
+    ) -> BatchStatus {
+        const { assert!(!Self::FITS_TAYLOR, "FITS_TAYLOR wants an own `fit_batch`") };
+        BatchStatus::default()
+    }
+
+    /// The points of [`Reconstruction::line`] with their weights, as shares of the line; likewise.
+    #[doc(hidden)]
+    fn weighted_line(&self) -> impl Iterator<Item = (T, T)> {
+        const { assert!(!Self::FITS_TAYLOR, "FITS_TAYLOR wants an own `weighted_line`") };
+        std::iter::empty()
+    }
+
+    /// [`Reconstruction::integrate_batch`] in one cell that is given by its number, point by point; returns whether it was fitted with
     /// the full set of functions.
     fn integrate_single<Q: Field<T>>(
         &self,
@@ -431,6 +458,7 @@ pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction
     // Four at once are prepared by nobody, and are asked for only where cells are streamed alone.
     assert!(!R::BATCHED || R::CELLWISE, "BATCHED wants CELLWISE");
     assert!(!R::NON_LOCAL || R::CELLWISE, "NON_LOCAL wants CELLWISE");
+    assert!(!R::FITS_TAYLOR || R::BATCHED, "FITS_TAYLOR wants BATCHED");
 }
 
 /// A constant without its method does not compile:

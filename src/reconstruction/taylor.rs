@@ -23,9 +23,32 @@ use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each};
 use crate::taylor::{
-    BatchSums, CellFit, FEW_COMPONENTS, FourFits, Gram, MOST_COMPONENTS, Rights, SharedFactor, are_few,
-    default_tolerance, kept, taylor_functions,
+    BatchSums, CellFit, FourFits, Gram, MOST_COMPONENTS, Rights, SharedFactor, default_tolerance,
+    keep_products, kept, kept_products, taylor_functions,
 };
+
+/// Calls with the least number `C` of those that arrays for so many components may have: what is not used of
+/// an array is written all the same.
+macro_rules! with_room {
+    ($components:expr, |$c:ident| $call:expr) => {
+        if const { $components <= 1 } {
+            const $c: usize = 1;
+            $call
+        } else if const { $components <= 2 } {
+            const $c: usize = 2;
+            $call
+        } else if const { $components <= 4 } {
+            const $c: usize = 4;
+            $call
+        } else if const { $components <= 6 } {
+            const $c: usize = 6;
+            $call
+        } else {
+            const $c: usize = MOST_COMPONENTS;
+            $call
+        }
+    };
+}
 
 /// Taylor least squares (Wobbes, Moller, Galavi & Vuik 2019): in each cell $e$ a polynomial of `NB` Taylor
 /// functions through the particles' values, integrated by Gauss quadrature. `NB` = 3, 6, 10 in 1, 2, 3
@@ -329,6 +352,23 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         four
     }
 
+    /// [`Reconstruction::fit_batch`] likewise.
+    #[inline(always)]
+    fn fit_few<K: Packs<T>, Q: Field<T>, const C: usize>(
+        &self,
+        k: K,
+        place: (&Cloud<'_, T, D>, Range<usize>),
+        conserve: bool,
+        kept: Kept<'_, T>,
+        value: &impl Values<T, Q>,
+        sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
+    ) -> BatchStatus {
+        let mut coefficients = [[k.splat(T::zero()); C]; NB];
+        let four = self.fit_four::<K, Q, C>(k, place, conserve, kept, value, &mut coefficients);
+        hand_over(k, &coefficients, Q::COMPONENTS, sink);
+        four
+    }
+
     /// Coefficients of the fits of four cells. Out of line: it knows nothing of a basis, and is compiled once
     /// for all.
     #[inline(never)]
@@ -412,6 +452,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         let shared = SharedFactor::new::<T, K, D>(k, &sums.gram, &group.counts, self.tolerance);
         if !kept.numbers.is_empty() {
             SharedFactor::keep::<T, K>(shared.as_ref(), k, kept.numbers);
+            if shared.is_none() {
+                keep_products::<T, K, NB>(k, &sums.gram, kept.numbers);
+            }
         }
         match shared {
             Some(factor) => full_fits(k, &factor, true, &sums.right, Q::COMPONENTS),
@@ -436,7 +479,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
             false => None,
         };
         let Some(factor) = shared else {
-            return self.fit_conserved_anew::<K, Q, C>(k, (cloud, cells), value);
+            return self.fit_conserved_anew::<K, Q, C>(k, (cloud, cells), kept, value);
         };
         let mut sums: BatchSums<K::V, NB, C> =
             group.sums::<ConservedValues, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes);
@@ -455,20 +498,47 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         &self,
         k: K,
         (cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
+        kept: Kept<'_, T>,
         value: &impl Values<T, Q>,
     ) -> FourFits<K::V, NB, C> {
         k.run(
             #[inline(always)]
             move || {
                 let group = CellGroup::new(cloud, cells.clone());
-                let mut sums: BatchSums<K::V, NB, C> =
-                    group.sums::<Conserved, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes);
+                let products = match kept.fresh {
+                    true => kept_products::<T, K, NB>(k, kept.numbers),
+                    false => None,
+                };
+                let mut sums: BatchSums<K::V, NB, C> = match products {
+                    Some(gram) => BatchSums {
+                        gram,
+                        ..group.sums::<ConservedValues, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes)
+                    },
+                    None => group.sums::<Conserved, T, K, Q, NB, C>(k, cloud, cells, value, cloud.volumes),
+                };
                 let mean = sums.take_out_mean::<T, K>(k, cloud.grid.cell_volume(), Q::COMPONENTS);
                 let mut fits = sums.fit::<T, K, D>(k, 1, &group.counts, self.tolerance, Q::COMPONENTS);
                 fits.coefficients[0] = mean;
                 fits
             },
         )
+    }
+}
+
+/// Hands over the coefficients of each function.
+#[inline(always)]
+pub(super) fn hand_over<T: Scalar, K: Packs<T>, const NB: usize, const C: usize>(
+    k: K,
+    coefficients: &Rights<K::V, NB, C>,
+    components: usize,
+    mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
+) {
+    for n in 0..NB {
+        let mut values = [k.splat(T::zero()); MOST_COMPONENTS];
+        for q in 0..components {
+            values[q] = coefficients[n][q];
+        }
+        sink(n, &values);
     }
 }
 
@@ -677,13 +747,34 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> BatchStatus {
-        if const { are_few::<T, Q, D>() && Q::COMPONENTS == 1 } {
-            self.integrate_few::<K, Q, 1>(k, (cloud, cells), conserve, kept, value, sink)
-        } else if const { are_few::<T, Q, D>() } {
-            self.integrate_few::<K, Q, FEW_COMPONENTS>(k, (cloud, cells), conserve, kept, value, sink)
-        } else {
-            self.integrate_few::<K, Q, MOST_COMPONENTS>(k, (cloud, cells), conserve, kept, value, sink)
-        }
+        with_room!(Q::COMPONENTS, |C| self.integrate_few::<K, Q, C>(
+            k,
+            (cloud, cells),
+            conserve,
+            kept,
+            value,
+            sink
+        ))
+    }
+
+    const FITS_TAYLOR: bool = true;
+
+    fn weighted_line(&self) -> impl Iterator<Item = (T, T)> {
+        self.rule.weighted_line()
+    }
+
+    #[inline(always)]
+    fn fit_batch<K: Packs<T>, Q: Field<T>>(
+        &self,
+        k: K,
+        place: (&Cloud<'_, T, D>, Range<usize>),
+        conserve: bool,
+        kept: Kept<'_, T>,
+        value: &impl Values<T, Q>,
+        sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
+    ) -> BatchStatus {
+        with_room!(Q::COMPONENTS, |C| self
+            .fit_few::<K, Q, C>(k, place, conserve, kept, value, sink))
     }
 
     #[cold]

@@ -2,9 +2,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::field::{Field, MassMomentum, Symmetric};
+use crate::field::{Field, MassMomentum, Symmetric, symmetric_place};
 use crate::scalar::Scalar;
-use crate::simd::{LANES, Packs, each, in_lanes};
+use crate::simd::{LANES, Packs, each, in_lanes, inlined};
 
 /// A field at the particles, by their numbers: any function of those, or what knows more ways to be asked.
 pub trait Values<T: Scalar, Q: Field<T>> {
@@ -19,6 +19,17 @@ pub trait Values<T: Scalar, Q: Field<T>> {
             k,
             #[inline(always)]
             |l| self.at(first + l),
+        )
+    }
+
+    /// The same of any four particles.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn lanes<K: Packs<T>, const C: usize>(&self, k: K, particles: &[usize; LANES]) -> [K::V; C] {
+        lanes_of(
+            k,
+            #[inline(always)]
+            |l| self.at(particles[l]),
         )
     }
 }
@@ -59,6 +70,15 @@ impl<T: Scalar, Q: Field<T>> Values<T, Q> for Stored<'_, Q> {
         }
         components
     }
+
+    #[inline(always)]
+    fn lanes<K: Packs<T>, const C: usize>(&self, k: K, particles: &[usize; LANES]) -> [K::V; C] {
+        components_of::<T, K, Q, C>(
+            k,
+            #[inline(always)]
+            |l, q| self.0[particles[l]].component(q),
+        )
+    }
 }
 
 /// Symmetric tensors that lie end to end in memory.
@@ -90,6 +110,15 @@ impl<T: Scalar, const D: usize> Values<T, Symmetric<T, D>> for Stresses<'_, T, D
         }
         components
     }
+
+    #[inline(always)]
+    fn lanes<K: Packs<T>, const C: usize>(&self, k: K, particles: &[usize; LANES]) -> [K::V; C] {
+        components_of::<T, K, Symmetric<T, D>, C>(
+            k,
+            #[inline(always)]
+            |l, q| self.0[particles[l]][symmetric_place::<D>(q)],
+        )
+    }
 }
 
 /// Densities of mass and momentum.
@@ -120,6 +149,29 @@ impl<T: Scalar, const D: usize> Values<T, MassMomentum<T, D>> for Densities<'_, 
         let mut components = [density; C];
         for a in 0..D.min(C - 1) {
             components[1 + a] = four_components::<T, K, D>(k, self.velocities, first, a) * density;
+        }
+        components
+    }
+
+    #[inline(always)]
+    fn lanes<K: Packs<T>, const C: usize>(&self, k: K, particles: &[usize; LANES]) -> [K::V; C] {
+        let numbers = inlined(
+            #[inline(always)]
+            |of: &[T]| {
+                k.pack(in_lanes(
+                    #[inline(always)]
+                    |l| of[particles[l]],
+                ))
+            },
+        );
+        let density = numbers(self.masses) / numbers(self.volumes);
+        let mut components = [density; C];
+        for a in 0..D.min(C - 1) {
+            let velocity = k.pack(in_lanes(
+                #[inline(always)]
+                |l| self.velocities[particles[l]][a],
+            ));
+            components[1 + a] = velocity * density;
         }
         components
     }
@@ -168,6 +220,23 @@ pub(super) fn four_components<T: Scalar, K: Packs<T>, const D: usize>(
             ))
         },
     )
+}
+
+/// The components of four values, the `q`-th of the `l`-th of which is `component(l, q)`: copies of whole
+/// values would be read before they are written.
+#[inline(always)]
+fn components_of<T: Scalar, K: Packs<T>, Q: Field<T>, const C: usize>(
+    k: K,
+    component: impl Fn(usize, usize) -> T,
+) -> [K::V; C] {
+    let mut components = [k.splat(T::zero()); C];
+    for q in 0..Q::COMPONENTS.min(C) {
+        components[q] = k.pack(in_lanes(
+            #[inline(always)]
+            |l| component(l, q),
+        ));
+    }
+    components
 }
 
 /// The components of four values, the `l`-th of which is `value(l)`.

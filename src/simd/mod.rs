@@ -105,6 +105,36 @@ pub(crate) fn in_lanes<T: Scalar, const N: usize>(mut f: impl FnMut(usize) -> T)
     all
 }
 
+/// Calls `f` for each number below `N`, in code of its own where these are few: arrays that are indexed by it
+/// can stay in registers then. Compilers give up on loops within loops whose ends differ.
+#[inline(always)]
+pub(crate) fn unrolled<const N: usize>(mut f: impl FnMut(usize)) {
+    if const { N > 6 } {
+        for n in 0..N {
+            f(n);
+        }
+        return;
+    }
+    if const { N > 0 } {
+        f(0);
+    }
+    if const { N > 1 } {
+        f(1);
+    }
+    if const { N > 2 } {
+        f(2);
+    }
+    if const { N > 3 } {
+        f(3);
+    }
+    if const { N > 4 } {
+        f(4);
+    }
+    if const { N > 5 } {
+        f(5);
+    }
+}
+
 /// A closure that is certain to be inlined if it is told so: attributes are allowed on arguments only.
 #[inline(always)]
 pub(crate) fn inlined<F>(f: F) -> F {

@@ -10,7 +10,7 @@ use super::basis::taylor_sizes;
 use super::fit::{GRAM_SHARE, ROUNDING};
 use crate::field::Field;
 use crate::scalar::Scalar;
-use crate::simd::{LANES, Lanes, Number, Packs, each, in_lanes};
+use crate::simd::{LANES, Lanes, Number, Packs, each, in_lanes, unrolled};
 
 /// Most components of a field: a tensor in three dimensions.
 pub const MOST_COMPONENTS: usize = 9;
@@ -302,30 +302,52 @@ fn factorise_any<T: Scalar, K: Packs<T>, const D: usize, const NB: usize>(
     );
     let mut l = [[zero; NB]; NB];
     let (mut doubt, mut functions) = (zero, zero);
-    for m in first..NB {
-        let square = gram[m][m];
-        let mut left = square;
-        let mut row = [zero; NB];
-        for j in first..m {
-            let mut dot = gram[m][j];
-            for i in first..j {
-                dot = dot - l[j][i] * row[i];
+    unrolled::<NB>(
+        #[inline(always)]
+        |m| {
+            if m < first {
+                return;
             }
-            row[j] = dot;
-            l[m][j] = dot * l[j][j];
-            left = left - l[m][j] * dot;
-        }
-        let least = total * k.splat(tolerance * tolerance * sizes[m] * sizes[m]);
-        let allowed = numbers.above(k.splat(T::count(m)));
-        let kept = left.above(least) * left.above(square * share) * allowed;
-        let seen = (left + square * rounding).above(least) * allowed;
-        doubt = doubt + (seen - kept);
-        functions = functions + kept;
-        l[m][m] = kept / (left * kept + (one - kept));
-        for j in first..m {
-            l[m][j] = l[m][j] * kept;
-        }
-    }
+            let square = gram[m][m];
+            let mut left = square;
+            let mut row = [zero; NB];
+            unrolled::<NB>(
+                #[inline(always)]
+                |j| {
+                    if j < first || j >= m {
+                        return;
+                    }
+                    let mut dot = gram[m][j];
+                    unrolled::<NB>(
+                        #[inline(always)]
+                        |i| {
+                            if first <= i && i < j {
+                                dot = dot - l[j][i] * row[i];
+                            }
+                        },
+                    );
+                    row[j] = dot;
+                    l[m][j] = dot * l[j][j];
+                    left = left - l[m][j] * dot;
+                },
+            );
+            let least = total * k.splat(tolerance * tolerance * sizes[m] * sizes[m]);
+            let allowed = numbers.above(k.splat(T::count(m)));
+            let kept = left.above(least) * left.above(square * share) * allowed;
+            let seen = (left + square * rounding).above(least) * allowed;
+            doubt = doubt + (seen - kept);
+            functions = functions + kept;
+            l[m][m] = kept / (left * kept + (one - kept));
+            unrolled::<NB>(
+                #[inline(always)]
+                |j| {
+                    if first <= j && j < m {
+                        l[m][j] = l[m][j] * kept;
+                    }
+                },
+            );
+        },
+    );
     let (doubt, functions) = (k.array(doubt), k.array(functions));
     Factored {
         factor: Factor(l),
@@ -356,20 +378,44 @@ impl<V: Copy, const NB: usize> Factor<V, NB> {
     {
         let l = &self.0;
         let mut x = [zero; NB];
-        for k in first..NB {
-            x[k] = right[k][q];
-            for j in first..k {
-                x[k] = x[k] - l[k][j] * x[j];
-            }
-        }
+        unrolled::<NB>(
+            #[inline(always)]
+            |k| {
+                if k < first {
+                    return;
+                }
+                x[k] = right[k][q];
+                unrolled::<NB>(
+                    #[inline(always)]
+                    |j| {
+                        if first <= j && j < k {
+                            x[k] = x[k] - l[k][j] * x[j];
+                        }
+                    },
+                );
+            },
+        );
         for k in first..NB {
             x[k] = x[k] * l[k][k];
         }
-        for k in (first..NB).rev() {
-            for j in k + 1..NB {
-                x[k] = x[k] - l[j][k] * x[j];
-            }
-            coefficients[k][q] = x[k];
-        }
+        // From the last one down.
+        unrolled::<NB>(
+            #[inline(always)]
+            |n| {
+                let k = NB - 1 - n;
+                if k < first {
+                    return;
+                }
+                unrolled::<NB>(
+                    #[inline(always)]
+                    |j| {
+                        if k < j {
+                            x[k] = x[k] - l[j][k] * x[j];
+                        }
+                    },
+                );
+                coefficients[k][q] = x[k];
+            },
+        );
     }
 }

@@ -22,5 +22,5 @@ pub use four::MOST_COMPONENTS;
 pub(crate) use four::{
     BatchSums, FEW_COMPONENTS, Factor, FourFits, Products, Rights, are_few, factorise, taylor_lanes,
 };
-pub(crate) use shared::{SharedFactor, kept};
+pub(crate) use shared::{SharedFactor, keep_products, kept, kept_products};
 pub(crate) use shift::{shift_lanes, shift_sums};

@@ -11,13 +11,14 @@ use super::basis::taylor_sizes;
 use super::fit::GRAM_SHARE;
 use super::four::{Products, Rights};
 use crate::scalar::Scalar;
-use crate::simd::{LANES, Number, Packs};
+use crate::simd::{LANES, Number, Packs, unrolled};
 
 /// The factor of four cells, functions in the order of [`function`].
 #[derive(Clone, Copy)]
 pub(crate) struct SharedFactor<V, const NB: usize> {
-    /// Unit triangular below the diagonal, one over the squares that are left on it.
-    lower: Products<V, NB>,
+    /// The inverse of the unit triangle `L` below the diagonal, one over the squares that are left on it: it
+    /// solves by products that need not wait for each other.
+    inverse: Products<V, NB>,
     /// Products of each function with the constant one.
     pub(crate) with_constant: [V; NB],
 }
@@ -33,22 +34,73 @@ pub(crate) const fn kept<const NB: usize>() -> usize {
     NB * (NB + 1) / 2 + NB + 1
 }
 
-/// The `m`-th entry on the diagonal of the inverse: one over the square that all other functions leave of the
-/// `m`-th. In no order is less left of it, so that a function that passes by this is kept by every fit.
+/// `L D L^T` of Gram matrices: `L` below the diagonal, one over `D` on it.
 #[inline(always)]
-fn inverse_diagonal<T, V: Number<T>, const NB: usize>(lower: &Products<V, NB>, zero: V, m: usize) -> V {
-    // The `m`-th column of the inverse of the triangle.
-    let mut column = [zero; NB];
-    let mut inverse = lower[m][m];
-    for n in m + 1..NB {
-        let mut entry = lower[n][m];
-        for j in m + 1..n {
-            entry = entry + lower[n][j] * column[j];
-        }
-        column[n] = zero - entry;
-        inverse = inverse + entry * entry * lower[n][n];
-    }
-    inverse
+fn triangle<T: Scalar, K: Packs<T>, const NB: usize>(k: K, gram: &Products<K::V, NB>) -> Products<K::V, NB> {
+    let (zero, one) = (k.splat(T::zero()), k.splat(T::one()));
+    let mut lower = [[zero; NB]; NB];
+    unrolled::<NB>(
+        #[inline(always)]
+        |m| {
+            let own = function::<NB>(m);
+            let mut left = gram[own][own];
+            let mut row = [zero; NB];
+            unrolled::<NB>(
+                #[inline(always)]
+                |j| {
+                    if j >= m {
+                        return;
+                    }
+                    let other = function::<NB>(j);
+                    let (high, low) = if own > other { (own, other) } else { (other, own) };
+                    let mut dot = gram[high][low];
+                    unrolled::<NB>(
+                        #[inline(always)]
+                        |i| {
+                            if i < j {
+                                dot = dot - lower[j][i] * row[i];
+                            }
+                        },
+                    );
+                    row[j] = dot;
+                    lower[m][j] = dot * lower[j][j];
+                    left = left - lower[m][j] * dot;
+                },
+            );
+            lower[m][m] = one / left;
+        },
+    );
+    lower
+}
+
+/// The inverse of the unit triangle below the diagonal, in its place.
+#[inline(always)]
+fn invert<T: Scalar, V: Number<T>, const NB: usize>(zero: V, lower: &mut Products<V, NB>) {
+    unrolled::<NB>(
+        #[inline(always)]
+        |n| {
+            // Rows above are inverted already.
+            let row = lower[n];
+            unrolled::<NB>(
+                #[inline(always)]
+                |j| {
+                    if j >= n {
+                        return;
+                    }
+                    let mut entry = row[j];
+                    unrolled::<NB>(
+                        #[inline(always)]
+                        |i| {
+                            if j < i && i < n {
+                                entry = row[i].mul_add(lower[i][j], entry);
+                            }
+                        },
+                    );
+                    lower[n][j] = zero - entry;
+                },
+            );
+        },
+    );
 }
 
 impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
@@ -64,83 +116,106 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
     where
         V: Number<T>,
     {
+        if counts[0].min(counts[1]).min(counts[2].min(counts[3])) < NB {
+            return None;
+        }
         let (zero, one) = (k.splat(T::zero()), k.splat(T::one()));
         let sizes: SVector<T, NB> = taylor_sizes::<T, D, NB>();
         let share = k.splat(T::lit(GRAM_SHARE));
-        let mut lower = [[zero; NB]; NB];
-        for m in 0..NB {
-            let own = function::<NB>(m);
-            let mut left = gram[own][own];
-            let mut row = [zero; NB];
-            for j in 0..m {
-                let other = function::<NB>(j);
-                let (high, low) = if own > other { (own, other) } else { (other, own) };
-                let mut dot = gram[high][low];
-                for i in 0..j {
-                    dot = dot - lower[j][i] * row[i];
-                }
-                row[j] = dot;
-                lower[m][j] = dot * lower[j][j];
-                left = left - lower[m][j] * dot;
-            }
-            lower[m][m] = one / left;
-        }
+        let mut inverse = triangle::<T, K, NB>(k, gram);
+        invert(zero, &mut inverse);
         let mut full = one;
-        for m in 0..NB {
-            let own = function::<NB>(m);
-            let inverse = inverse_diagonal(&lower, zero, m);
-            let least = gram[0][0] * k.splat(tolerance * tolerance * sizes[own] * sizes[own]);
-            let enough = one.above(inverse * least) * one.above(inverse * gram[own][own] * share);
-            full = full * lower[m][m].above(zero) * enough;
-        }
+        unrolled::<NB>(
+            #[inline(always)]
+            |m| {
+                // The `m`-th entry on the diagonal of the inverse of the Gram matrix: one over the square that
+                // all other functions leave of the `m`-th. In no order is less left of it, so that a function
+                // that passes by this is kept by every fit.
+                let mut diagonal = inverse[m][m];
+                unrolled::<NB>(
+                    #[inline(always)]
+                    |n| {
+                        if n > m {
+                            diagonal = (inverse[n][m] * inverse[n][m]).mul_add(inverse[n][n], diagonal);
+                        }
+                    },
+                );
+                let own = function::<NB>(m);
+                let least = gram[0][0] * k.splat(tolerance * tolerance * sizes[own] * sizes[own]);
+                let enough = one.above(diagonal * least) * one.above(diagonal * gram[own][own] * share);
+                full = full * inverse[m][m].above(zero) * enough;
+            },
+        );
         let mut with_constant = [gram[0][0]; NB];
         for n in 1..NB {
             with_constant[n] = gram[n][0];
         }
         let (half, two) = (k.splat(T::one() / T::lit(2.0)), k.splat(T::lit(2.0)));
-        let are_enough = counts[0] >= NB && counts[1] >= NB && counts[2] >= NB && counts[3] >= NB;
-        (are_enough && k.are_between(full, half, two)).then_some(Self { lower, with_constant })
+        k.are_between(full, half, two).then_some(Self {
+            inverse,
+            with_constant,
+        })
     }
 
     /// Keeps it, or that there is none.
     #[inline(always)]
     pub(crate) fn keep<T: Scalar, K: Packs<T, V = V>>(factor: Option<&Self>, k: K, kept: &mut [[T; LANES]]) {
-        let mut places = kept.iter_mut();
-        let mut put = |numbers: [T; LANES]| {
-            if let Some(place) = places.next() {
-                *place = numbers;
-            }
+        // All checks of lengths at once.
+        let Some((first, kept)) = kept.split_first_mut() else {
+            return;
         };
         let Some(factor) = factor else {
-            return put([T::zero(); LANES]);
+            *first = [T::zero(); LANES];
+            return;
         };
-        put([T::one(); LANES]);
-        for m in 0..NB {
-            for j in 0..=m {
-                put(k.array(factor.lower[m][j]));
-            }
-            put(k.array(factor.with_constant[m]));
-        }
+        *first = [T::one(); LANES];
+        let Some(kept) = kept.get_mut(..NB * (NB + 1) / 2 + NB) else {
+            return;
+        };
+        unrolled::<NB>(
+            #[inline(always)]
+            |m| {
+                unrolled::<NB>(
+                    #[inline(always)]
+                    |j| {
+                        if j <= m {
+                            kept[row::<NB>(m) + j] = k.array(factor.inverse[m][j]);
+                        }
+                    },
+                );
+                kept[row::<NB>(m) + m + 1] = k.array(factor.with_constant[m]);
+            },
+        );
     }
 
     /// What was kept, if anything was.
     #[inline(always)]
     pub(crate) fn kept<T: Scalar, K: Packs<T, V = V>>(k: K, kept: &[[T; LANES]]) -> Option<Self> {
         let (there, numbers) = kept.split_first()?;
-        if there[0].is_zero() || numbers.len() < NB * (NB + 1) / 2 + NB {
+        let numbers = numbers.get(..NB * (NB + 1) / 2 + NB)?;
+        if there[0] != T::one() {
             return None;
         }
         let zero = k.splat(T::zero());
-        let (mut lower, mut with_constant, mut n) = ([[zero; NB]; NB], [zero; NB], 0);
-        for m in 0..NB {
-            for j in 0..=m {
-                lower[m][j] = k.pack(numbers[n]);
-                n += 1;
-            }
-            with_constant[m] = k.pack(numbers[n]);
-            n += 1;
-        }
-        Some(Self { lower, with_constant })
+        let (mut inverse, mut with_constant) = ([[zero; NB]; NB], [zero; NB]);
+        unrolled::<NB>(
+            #[inline(always)]
+            |m| {
+                unrolled::<NB>(
+                    #[inline(always)]
+                    |j| {
+                        if j <= m {
+                            inverse[m][j] = k.pack(numbers[row::<NB>(m) + j]);
+                        }
+                    },
+                );
+                with_constant[m] = k.pack(numbers[row::<NB>(m) + m + 1]);
+            },
+        );
+        Some(Self {
+            inverse,
+            with_constant,
+        })
     }
 
     /// Coefficients of component `q` from its sums, with all functions or, given the mean, all but the
@@ -156,24 +231,111 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
     ) where
         V: Number<T>,
     {
-        let (l, count) = (&self.lower, if all { NB } else { NB - 1 });
+        let (inverse, count) = (&self.inverse, if all { NB } else { NB - 1 });
         let mut x = [zero; NB];
-        for m in 0..count {
-            x[m] = right[function::<NB>(m)][q];
-            for j in 0..m {
-                x[m] = x[m] - l[m][j] * x[j];
-            }
-        }
-        for m in 0..count {
-            x[m] = x[m] * l[m][m];
-        }
-        for m in (0..count).rev() {
-            for j in m + 1..count {
-                x[m] = x[m] - l[j][m] * x[j];
-            }
-            coefficients[function::<NB>(m)][q] = x[m];
-        }
+        unrolled::<NB>(
+            #[inline(always)]
+            |m| {
+                if m >= count {
+                    return;
+                }
+                let mut sum = right[function::<NB>(m)][q];
+                unrolled::<NB>(
+                    #[inline(always)]
+                    |j| {
+                        if j < m {
+                            sum = inverse[m][j].mul_add(right[function::<NB>(j)][q], sum);
+                        }
+                    },
+                );
+                x[m] = sum * inverse[m][m];
+            },
+        );
+        unrolled::<NB>(
+            #[inline(always)]
+            |m| {
+                if m >= count {
+                    return;
+                }
+                let mut sum = x[m];
+                unrolled::<NB>(
+                    #[inline(always)]
+                    |j| {
+                        if m < j && j < count {
+                            sum = inverse[j][m].mul_add(x[j], sum);
+                        }
+                    },
+                );
+                coefficients[function::<NB>(m)][q] = sum;
+            },
+        );
     }
+}
+
+/// Keeps the Gram matrices of cells that share no factor.
+#[inline(always)]
+pub(crate) fn keep_products<T: Scalar, K: Packs<T>, const NB: usize>(
+    k: K,
+    gram: &Products<K::V, NB>,
+    kept: &mut [[T; LANES]],
+) {
+    let Some((first, kept)) = kept.split_first_mut() else {
+        return;
+    };
+    let Some(kept) = kept.get_mut(..NB * (NB + 1) / 2) else {
+        return;
+    };
+    *first = [T::lit(PRODUCTS); LANES];
+    unrolled::<NB>(
+        #[inline(always)]
+        |m| {
+            unrolled::<NB>(
+                #[inline(always)]
+                |j| {
+                    if j <= m {
+                        kept[m * (m + 1) / 2 + j] = k.array(gram[m][j]);
+                    }
+                },
+            );
+        },
+    );
+}
+
+/// Gram matrices, if they were kept.
+#[inline(always)]
+pub(crate) fn kept_products<T: Scalar, K: Packs<T>, const NB: usize>(
+    k: K,
+    kept: &[[T; LANES]],
+) -> Option<Products<K::V, NB>> {
+    let (first, numbers) = kept.split_first()?;
+    let numbers = numbers.get(..NB * (NB + 1) / 2)?;
+    if first[0] != T::lit(PRODUCTS) {
+        return None;
+    }
+    let mut gram = [[k.splat(T::zero()); NB]; NB];
+    unrolled::<NB>(
+        #[inline(always)]
+        |m| {
+            unrolled::<NB>(
+                #[inline(always)]
+                |j| {
+                    if j <= m {
+                        gram[m][j] = k.pack(numbers[m * (m + 1) / 2 + j]);
+                    }
+                },
+            );
+        },
+    );
+    Some(gram)
+}
+
+/// What is kept first where the rest are products: one tells that they are a factor, zero that there are none.
+const PRODUCTS: f64 = 2.0;
+
+/// Where row `m` of what is kept begins.
+#[inline(always)]
+const fn row<const NB: usize>(m: usize) -> usize {
+    m * (m + 1) / 2 + m
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use super::Sweep;
 use super::pairs::PairSums;
+use super::polynomials::{CellMatrices, MOST_FUNCTIONS};
 use super::sums::{Parts, Sum, Sums};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::field::{Field, MassMomentum, Pair, Symmetric, symmetric_component};
@@ -24,11 +25,50 @@ pub(crate) const MOST_POINTS: usize = LANES;
 /// Values and slopes of the functions along an axis at one point, a cell in each lane.
 type Along<V> = [[V; MOST_WIDTH]; 2];
 
+/// Of which kinds four cells are: those of one kind have the same functions.
+pub(super) struct Kinds<const D: usize> {
+    kinds: Option<[[usize; D]; LANES]>,
+    /// Whether they are cells of one line that all are far from the ends of the grid.
+    inside: bool,
+}
+
+impl<const D: usize> Kinds<D> {
+    /// Of none yet.
+    pub(super) fn new() -> Self {
+        Self {
+            kinds: None,
+            inside: false,
+        }
+    }
+
+    /// Takes in those of four cells; returns whether they are others than before.
+    #[inline(always)]
+    pub(super) fn change<T: Scalar, B: BasisFamily<T, D>>(
+        &mut self,
+        sweep: &Sweep<'_, T, D, B>,
+        cells: &[Cell<D>; LANES],
+    ) -> bool {
+        // Along one axis cells ascend: the first and the last one tell.
+        let inside = D == 1 && sweep.kind(&cells[0]) == [0; D] && sweep.kind(&cells[LANES - 1]) == [0; D];
+        if inside && self.inside {
+            return false;
+        }
+        self.inside = inside;
+        let kinds = each(
+            #[inline(always)]
+            |l| sweep.kind(&cells[l]),
+        );
+        let changed = self.kinds != Some(kinds);
+        if changed {
+            self.kinds = Some(kinds);
+        }
+        changed
+    }
+}
+
 /// Functions along each axis at each point of a line.
 struct AtPoints<V, const D: usize> {
-    kinds: Option<[[usize; D]; LANES]>,
-    /// Whether they are those of cells of one line that all are far from the ends of the grid.
-    inside: bool,
+    kinds: Kinds<D>,
     points: usize,
     along: [[Along<V>; MOST_POINTS]; D],
 }
@@ -38,8 +78,7 @@ impl<V: Copy, const D: usize> AtPoints<V, D> {
     fn new<T: Scalar, K: Packs<T, V = V>>(k: K, points: usize) -> Self {
         let nothing = [[k.splat(T::zero()); MOST_WIDTH]; 2];
         Self {
-            kinds: None,
-            inside: false,
+            kinds: Kinds::new(),
             points,
             along: [[nothing; MOST_POINTS]; D],
         }
@@ -54,18 +93,7 @@ impl<V: Copy, const D: usize> AtPoints<V, D> {
         cells: &[Cell<D>; LANES],
         units: V,
     ) {
-        // Along one axis cells ascend: the first and the last one tell.
-        let inside = D == 1 && sweep.kind(&cells[0]) == [0; D] && sweep.kind(&cells[LANES - 1]) == [0; D];
-        if inside && self.inside {
-            return;
-        }
-        self.inside = inside;
-        let kinds = each(
-            #[inline(always)]
-            |l| sweep.kind(&cells[l]),
-        );
-        if self.kinds != Some(kinds) {
-            self.kinds = Some(kinds);
+        if self.kinds.change(sweep, cells) {
             self.compute(k, sweep, cells, units);
         }
     }
@@ -141,14 +169,6 @@ pub(crate) struct Fits<'a, 'c, T, const D: usize, M, R> {
 }
 
 impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
-    /// Whether cells that ascend along one axis follow each other, and so do their DOFs: those of cells at
-    /// the ends need not.
-    #[inline(always)]
-    fn follow(&self, cells: &[Cell<D>; LANES]) -> bool {
-        cells[LANES - 1][0] - cells[0][0] == LANES as u32 - 1
-            && self.first_dof(&cells[LANES - 1]) - self.first_dof(&cells[0]) == LANES - 1
-    }
-
     /// Cells of one kind have the same functions.
     #[inline(always)]
     fn kind(&self, cell: &Cell<D>) -> [usize; D] {
@@ -161,6 +181,15 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 0
             }
         })
+    }
+
+    /// Whether cells that ascend follow each other along axis 0, and their DOFs too.
+    #[inline(always)]
+    fn follow(&self, cells: &[Cell<D>; LANES]) -> bool {
+        let (first, last) = (&cells[0], &cells[LANES - 1]);
+        last[0] == first[0] + (LANES as u32 - 1)
+            && last[1..] == first[1..]
+            && self.first_dof(last) == self.first_dof(first) + (LANES - 1)
     }
 
     /// Streams fields that are fitted in each cell to DOFs: what an [`Integrand`] makes of their values at
@@ -212,6 +241,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         let cloud = &{ *fits.cloud };
         let (points, units) = line(k, reconstruction.line());
         let mut functions = AtPoints::<K::V, D>::new(k, points);
+        let mut matrices = CellMatrices::<T, K::V, D>::new(k, reconstruction.weighted_line());
         let mut sums = Sums::<K::V, D, S, C, G>::new(k);
         let mut pairs = [PairSums::<K::V, D>::new(k); W];
         let slopes = self.inverse(k);
@@ -220,33 +250,50 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         for first in cells.clone().step_by(LANES) {
             let places = first..cells.end.min(first + LANES);
             let four = batch_of_cells(cloud, places.clone()).map(|(_, cell)| cell);
-            functions.take(k, self, &four, units);
-            let outcome = reconstruction.integrate_batch::<K, I::Field>(
-                k,
-                (cloud, places.clone()),
-                I::CONSERVED,
-                Kept {
-                    numbers: numbers.next().unwrap_or_default(),
-                    fresh: fits.fresh,
-                },
-                value,
-                #[inline(always)]
-                |number, value| {
-                    let factors = functions.at(number);
-                    let parts = I::parts(value, &slopes);
-                    sums.add_to::<false, T, B, K>(k, self, &factors, &parts);
-                    let masses = I::masses(value);
-                    for q in 0..W {
-                        pairs[q].add_to::<T, B>(&factors, masses[q]);
-                    }
-                },
-            );
+            let kept = Kept {
+                numbers: numbers.next().unwrap_or_default(),
+                fresh: fits.fresh,
+            };
+            // Matrices of masses want the values at the points.
+            let outcome = if const { R::FITS_TAYLOR && W == 0 } {
+                matrices.take(k, self, &four);
+                let ones = [k.splat(T::one()); D];
+                let nothing = I::parts(&[k.splat(T::zero()); MOST_COMPONENTS], &ones);
+                let mut parts = [nothing; MOST_FUNCTIONS];
+                let outcome = reconstruction.fit_batch::<K, I::Field>(
+                    k,
+                    (cloud, places.clone()),
+                    I::CONSERVED,
+                    kept,
+                    value,
+                    #[inline(always)]
+                    |number, value| parts[number] = I::parts(value, &ones),
+                );
+                matrices.put::<B, S, C, G>(&parts, &mut sums);
+                outcome
+            } else {
+                functions.take(k, self, &four, units);
+                reconstruction.integrate_batch::<K, I::Field>(
+                    k,
+                    (cloud, places.clone()),
+                    I::CONSERVED,
+                    kept,
+                    value,
+                    #[inline(always)]
+                    |number, value| {
+                        let factors = functions.at(number);
+                        let parts = I::parts(value, &slopes);
+                        sums.add_to::<false, T, B, K>(k, self, &factors, &parts);
+                        let masses = I::masses(value);
+                        for q in 0..W {
+                            pairs[q].add_to::<T, B>(&factors, masses[q]);
+                        }
+                    },
+                )
+            };
             reduced += outcome.reduced;
-            if const { D == 1 }
-                && places.len() == LANES
-                && self.follow(&four)
-                && outcome.hard == [false; LANES]
-            {
+            let lines = const { D == 1 || W == 0 };
+            if lines && places.len() == LANES && self.follow(&four) && outcome.hard == [false; LANES] {
                 sums.scatter_line(k, self, &four[0], sink);
                 for q in 0..W {
                     pairs[q].scatter_line(k, self, &four[0], &mut |i, j, mass| matrix(q, i, j, mass));

@@ -1,9 +1,7 @@
-//! Sums of four cells that follow each other along the only axis.
+//! Sums of four cells that follow each other along axis 0.
 //!
-//! They share DOFs: added up before they are handed over, each DOF is read and written once, and no cell
+//! They share DOFs: added up, row by row, before they are handed over, each DOF is read and written once, and no cell
 //! waits for the one before.
-
-use nalgebra::SVector;
 
 use super::Sweep;
 use super::pairs::{PairSums, pair};
@@ -47,36 +45,44 @@ impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Su
         sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
     ) {
         let zero = k.splat(T::zero());
-        let mut scalars = [Line::new(); S];
-        let mut vectors = [Line::new(); C];
-        let mut forces = [Line::new(); G];
-        for i in 0..B::WIDTH {
-            for q in 0..S {
-                scalars[q].add(i, k.array(self.scalars[i][q]));
-            }
-            for q in 0..C {
-                vectors[q].add(i, k.array(self.vectors[i][q][0]));
-            }
-            for q in 0..G {
-                forces[q].add(i, k.array(self.forces[i][q][0]));
-            }
-            self.scalars[i] = [zero; S];
-            self.vectors[i] = [[zero; D]; C];
-            self.forces[i] = [[zero; D]; G];
-        }
         let first = sweep.first_dof(cell);
-        for n in 0..LANES - 1 + B::WIDTH {
-            let mut sum = Sum::zero();
-            for q in 0..S {
-                sum.scalars[q] = scalars[q].0[n];
+        for row in 0..Sweep::<T, D, B>::ROWS {
+            let mut scalars = [Line::new(); S];
+            let mut vectors = [[Line::new(); D]; C];
+            let mut forces = [[Line::new(); D]; G];
+            for i in 0..B::WIDTH {
+                let place = row * B::WIDTH + i;
+                for q in 0..S {
+                    scalars[q].add(i, k.array(self.scalars[place][q]));
+                }
+                for c in 0..D {
+                    for q in 0..C {
+                        vectors[q][c].add(i, k.array(self.vectors[place][q][c]));
+                    }
+                    for q in 0..G {
+                        forces[q][c].add(i, k.array(self.forces[place][q][c]));
+                    }
+                }
+                self.scalars[place] = [zero; S];
+                self.vectors[place] = [[zero; D]; C];
+                self.forces[place] = [[zero; D]; G];
             }
-            for q in 0..C {
-                sum.vectors[q] = SVector::repeat(vectors[q].0[n]);
+            let (offset, _) = sweep.row(row);
+            for n in 0..LANES - 1 + B::WIDTH {
+                let mut sum = Sum::zero();
+                for q in 0..S {
+                    sum.scalars[q] = scalars[q].0[n];
+                }
+                for c in 0..D {
+                    for q in 0..C {
+                        sum.vectors[q][c] = vectors[q][c].0[n];
+                    }
+                    for q in 0..G {
+                        sum.forces[q][c] = forces[q][c].0[n];
+                    }
+                }
+                sink(first + offset + n, sum);
             }
-            for q in 0..G {
-                sum.forces[q] = SVector::repeat(forces[q].0[n]);
-            }
-            sink(first + n, sum);
         }
     }
 }

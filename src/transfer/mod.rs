@@ -11,7 +11,7 @@
 //! | `kick` | G2P of accelerations, then P2G of the new momenta in the same sweep |
 //! | `drift` | G2P of velocities and their gradients: positions, and what laws are asked for |
 //! | `gather` | G2P of velocities with their moments, for transfers from the grid |
-//! | `fits` | P2G from polynomials fitted in each cell |
+//! | `fits` | P2G from polynomials fitted in each cell, by `polynomials` where it can |
 //! | `scalars` | G2P of a scalar field and of its gradient |
 //! | `pairs` | the consistent mass matrix |
 //!
@@ -35,6 +35,7 @@ mod lines;
 mod p2g;
 mod pairs;
 mod places;
+mod polynomials;
 mod rows;
 mod scalars;
 mod sums;

@@ -15,6 +15,7 @@ mod tests;
 use std::ops::Range;
 
 use super::gauss::GaussRule;
+use super::taylor::hand_over;
 use super::{
     BatchStatus, Cloud, CourantNumbers, Filling, Kept, Point, Reconstruction, Shepard, Stored, Values,
 };
@@ -141,6 +142,16 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         self
     }
 
+    /// Which cells at these places are none of four.
+    #[inline(always)]
+    fn batch_status(&self, cells: Range<usize>) -> BatchStatus {
+        let mut four = BatchStatus::default();
+        for (hard, cell) in four.hard.iter_mut().zip(&self.cells[cells]) {
+            *hard = cell.kind != Kind::Batch;
+        }
+        four
+    }
+
     /// Makes room for all cells there are, so that a later step never has to allocate.
     fn reserve(&mut self, cells: usize) {
         let groups = cells.div_ceil(LANES);
@@ -245,11 +256,42 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
             self.rule
                 .emit_lanes(k, volume, &coefficients, Q::COMPONENTS, &mut sink);
         }
-        let mut four = BatchStatus::default();
-        for (hard, cell) in four.hard.iter_mut().zip(&self.cells[cells]) {
-            *hard = cell.kind != Kind::Batch;
+        self.batch_status(cells)
+    }
+
+    const FITS_TAYLOR: bool = true;
+
+    fn weighted_line(&self) -> impl Iterator<Item = (T, T)> {
+        self.rule.weighted_line()
+    }
+
+    #[inline(always)]
+    fn fit_batch<K: Packs<T>, Q: Field<T>>(
+        &self,
+        k: K,
+        (_cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
+        _conserve: bool,
+        _kept: Kept<'_, T>,
+        _value: &impl Values<T, Q>,
+        sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
+    ) -> BatchStatus {
+        let group = cells.start / LANES;
+        if const { are_few::<T, Q, D>() } {
+            hand_over(
+                k,
+                &self.integrated::<K, Q, FEW_COMPONENTS>(k, group),
+                Q::COMPONENTS,
+                sink,
+            );
+        } else {
+            hand_over(
+                k,
+                &self.integrated::<K, Q, MOST_COMPONENTS>(k, group),
+                Q::COMPONENTS,
+                sink,
+            );
         }
-        four
+        self.batch_status(cells)
     }
 
     #[cold]

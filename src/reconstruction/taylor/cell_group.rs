@@ -5,10 +5,9 @@ use std::ops::Range;
 use super::runs::{Run, sums_of_runs};
 use crate::field::Field;
 use crate::grid::Cell;
-use crate::reconstruction::values::lanes_of;
 use crate::reconstruction::{Cloud, Values, batch_of_cells};
 use crate::scalar::Scalar;
-use crate::simd::{LANES, Packs, each, in_lanes};
+use crate::simd::{LANES, Number, Packs, each, in_lanes};
 use crate::taylor::{BatchSums, taylor_lanes};
 
 /// Up to four occupied cells with their particles; spare lanes repeat the last cell.
@@ -152,9 +151,17 @@ impl<const D: usize> CellGroup<D> {
             #[inline(always)]
             |l| cloud.bins.particles_in(self.numbers[l]),
         );
+        let frame = self.frame(k, cloud);
+        let counts = k.pack(in_lanes(
+            #[inline(always)]
+            |l| T::lit(f64::from(self.counts[l] as u32)),
+        ));
+        let mut number = k.splat(T::zero());
         for n in 0..self.longest() {
-            let (numbers, mut weight) = self.points::<T, K>(k, &particles, n);
-            let psi = taylor_lanes::<T, K, D, NB>(k, &self.local(k, cloud, &numbers));
+            let numbers = self.particles(&particles, n);
+            let mut weight = counts.above(number);
+            number = number + k.splat(T::one());
+            let psi = taylor_lanes::<T, K, D, NB>(k, &frame.local(k, cloud, &numbers));
             let mut first = weight;
             if S::WEIGHTED || S::CONSERVED {
                 first = k.pack(in_lanes(
@@ -169,49 +176,71 @@ impl<const D: usize> CellGroup<D> {
                 sums.add_products(&psi, weight, 0);
             }
             if S::VALUES {
-                let values = lanes_of::<T, K, Q, C>(
-                    k,
-                    #[inline(always)]
-                    |l| values.at(numbers[l]),
-                );
+                let values = values.lanes::<K, C>(k, &numbers);
                 sums.add_values(&psi, weight, first, &values, Q::COMPONENTS);
             }
         }
         sums
     }
 
-    /// The `n`-th particle of each cell, and one; the last particle and zero where there are fewer.
+    /// The `n`-th particle of each cell; the last particle where there are fewer.
     #[inline(always)]
-    fn points<T: Scalar, K: Packs<T>>(
-        &self,
-        k: K,
-        particles: &[&[u32]; LANES],
-        n: usize,
-    ) -> ([usize; LANES], K::V) {
-        let numbers = each(
+    fn particles(&self, particles: &[&[u32]; LANES], n: usize) -> [usize; LANES] {
+        each(
             #[inline(always)]
             |l| particles[l][n.min(self.counts[l] - 1)] as usize,
-        );
-        let weights = each(
-            #[inline(always)]
-            |l| if n < self.counts[l] { T::one() } else { T::zero() },
-        );
-        (numbers, k.pack(weights))
+        )
     }
 
+    /// What local coordinates are made by.
+    #[inline(always)]
+    fn frame<T: Scalar, K: Packs<T>>(&self, k: K, cloud: &Cloud<'_, T, D>) -> Frame<K::V, D> {
+        let two = T::lit(2.0);
+        Frame {
+            min: each(
+                #[inline(always)]
+                |a| k.splat(cloud.grid.min()[a]),
+            ),
+            inverse: each(
+                #[inline(always)]
+                |a| k.splat(two * cloud.grid.inverse_cell_size()[a]),
+            ),
+            middle: each(
+                #[inline(always)]
+                |a| {
+                    k.pack(in_lanes(
+                        #[inline(always)]
+                        |l| two * T::lit(f64::from(self.cells[l][a])) + T::one(),
+                    ))
+                },
+            ),
+        }
+    }
+}
+
+/// The grid's corner, one over half a cell, and the middles of four cells in halves of one.
+struct Frame<V, const D: usize> {
+    min: [V; D],
+    inverse: [V; D],
+    middle: [V; D],
+}
+
+impl<V: Copy, const D: usize> Frame<V, D> {
     /// Local coordinates of one particle of each cell.
     #[inline(always)]
-    fn local<T: Scalar, K: Packs<T>>(
+    fn local<T: Scalar, K: Packs<T, V = V>>(
         &self,
         k: K,
         cloud: &Cloud<'_, T, D>,
         numbers: &[usize; LANES],
-    ) -> [K::V; D] {
+    ) -> [V; D]
+    where
+        V: Number<T>,
+    {
         let x: [_; LANES] = each(
             #[inline(always)]
             |l| &cloud.positions[numbers[l]],
         );
-        let (two, one) = (k.splat(T::lit(2.0)), k.splat(T::one()));
         each(
             #[inline(always)]
             |a| {
@@ -219,12 +248,7 @@ impl<const D: usize> CellGroup<D> {
                     #[inline(always)]
                     |l| x[l][a],
                 ));
-                let cell = k.pack(in_lanes(
-                    #[inline(always)]
-                    |l| T::lit(f64::from(self.cells[l][a])),
-                ));
-                let along = (x - k.splat(cloud.grid.min()[a])) * k.splat(cloud.grid.inverse_cell_size()[a]);
-                (along - cell) * two - one
+                (x - self.min[a]) * self.inverse[a] - self.middle[a]
             },
         )
     }
