@@ -741,7 +741,14 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> BatchStatus {
-        with_room!(Q::COMPONENTS, |C| self.integrate_few::<K, Q, C>(k, (cloud, cells), conserve, kept, value, sink))
+        with_room!(Q::COMPONENTS, |C| self.integrate_few::<K, Q, C>(
+            k,
+            (cloud, cells),
+            conserve,
+            kept,
+            value,
+            sink
+        ))
     }
 
     const FITS_TAYLOR: bool = true;
@@ -760,7 +767,8 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> BatchStatus {
-        with_room!(Q::COMPONENTS, |C| self.fit_few::<K, Q, C>(k, place, conserve, kept, value, sink))
+        with_room!(Q::COMPONENTS, |C| self
+            .fit_few::<K, Q, C>(k, place, conserve, kept, value, sink))
     }
 
     #[cold]

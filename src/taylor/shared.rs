@@ -36,10 +36,7 @@ pub(crate) const fn kept<const NB: usize>() -> usize {
 
 /// `L D L^T` of Gram matrices: `L` below the diagonal, one over `D` on it.
 #[inline(always)]
-fn triangle<T: Scalar, K: Packs<T>, const NB: usize>(
-    k: K,
-    gram: &Products<K::V, NB>,
-) -> Products<K::V, NB> {
+fn triangle<T: Scalar, K: Packs<T>, const NB: usize>(k: K, gram: &Products<K::V, NB>) -> Products<K::V, NB> {
     let (zero, one) = (k.splat(T::zero()), k.splat(T::one()));
     let mut lower = [[zero; NB]; NB];
     unrolled::<NB>(
@@ -164,13 +161,17 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
     #[inline(always)]
     pub(crate) fn keep<T: Scalar, K: Packs<T, V = V>>(factor: Option<&Self>, k: K, kept: &mut [[T; LANES]]) {
         // All checks of lengths at once.
-        let Some((first, kept)) = kept.split_first_mut() else { return };
+        let Some((first, kept)) = kept.split_first_mut() else {
+            return;
+        };
         let Some(factor) = factor else {
             *first = [T::zero(); LANES];
             return;
         };
         *first = [T::one(); LANES];
-        let Some(kept) = kept.get_mut(..NB * (NB + 1) / 2 + NB) else { return };
+        let Some(kept) = kept.get_mut(..NB * (NB + 1) / 2 + NB) else {
+            return;
+        };
         unrolled::<NB>(
             #[inline(always)]
             |m| {
@@ -278,8 +279,12 @@ pub(crate) fn keep_products<T: Scalar, K: Packs<T>, const NB: usize>(
     gram: &Products<K::V, NB>,
     kept: &mut [[T; LANES]],
 ) {
-    let Some((first, kept)) = kept.split_first_mut() else { return };
-    let Some(kept) = kept.get_mut(..NB * (NB + 1) / 2) else { return };
+    let Some((first, kept)) = kept.split_first_mut() else {
+        return;
+    };
+    let Some(kept) = kept.get_mut(..NB * (NB + 1) / 2) else {
+        return;
+    };
     *first = [T::lit(PRODUCTS); LANES];
     unrolled::<NB>(
         #[inline(always)]

@@ -12,6 +12,9 @@
 //! and for a gradient the slopes along its axis. Coefficients are summed along one axis after another; nothing
 //! is evaluated at points.
 
+#[cfg(test)]
+mod tests;
+
 use super::Sweep;
 use super::fits::{Kinds, MOST_POINTS};
 use super::sums::{Parts, Sums};
@@ -141,7 +144,11 @@ impl<T: Scalar, V: Number<T>, const D: usize> CellMatrices<T, V, D> {
         );
         for axis in 0..D {
             // The volume of a cell goes with the first axis.
-            let size = if axis == 0 { sweep.grid.cell_volume() } else { T::one() };
+            let size = if axis == 0 {
+                sweep.grid.cell_volume()
+            } else {
+                T::one()
+            };
             for i in 0..B::WIDTH {
                 let value = each(|l| k.array(of_cells[l].value[axis][i]));
                 let slope = each(|l| k.array(of_cells[l].slope[axis][i]));
@@ -393,11 +400,7 @@ const fn left<const P: usize>(used: usize) -> usize {
 
 /// The sum over `count` powers and one product or two of what are two factors.
 #[inline(always)]
-fn sum_of<T, V: Number<T>, A: Copy>(
-    count: usize,
-    products: &[A],
-    factors: impl Fn(A, usize) -> (V, V),
-) -> V {
+fn sum_of<T, V: Number<T>, A: Copy>(count: usize, products: &[A], factors: impl Fn(A, usize) -> (V, V)) -> V {
     let (first, second) = factors(products[0], 0);
     let mut sum = first * second;
     unrolled(

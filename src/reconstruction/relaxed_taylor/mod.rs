@@ -277,9 +277,19 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     ) -> BatchStatus {
         let group = cells.start / LANES;
         if const { are_few::<T, Q, D>() } {
-            hand_over(k, &self.integrated::<K, Q, FEW_COMPONENTS>(k, group), Q::COMPONENTS, sink);
+            hand_over(
+                k,
+                &self.integrated::<K, Q, FEW_COMPONENTS>(k, group),
+                Q::COMPONENTS,
+                sink,
+            );
         } else {
-            hand_over(k, &self.integrated::<K, Q, MOST_COMPONENTS>(k, group), Q::COMPONENTS, sink);
+            hand_over(
+                k,
+                &self.integrated::<K, Q, MOST_COMPONENTS>(k, group),
+                Q::COMPONENTS,
+                sink,
+            );
         }
         self.batch_status(cells)
     }
