@@ -12,6 +12,9 @@
 //! and for a gradient the slopes along its axis. Coefficients are summed along one axis after another; nothing
 //! is evaluated at points.
 
+#[cfg(test)]
+mod tests;
+
 use super::Sweep;
 use super::fits::{Kinds, MOST_POINTS};
 use super::sums::{Parts, Sums};
