@@ -31,6 +31,7 @@ mod lines;
 mod p2g;
 mod pairs;
 mod rows;
+mod sites;
 mod sums;
 
 pub(crate) use drift::{Drift, Outcome, drift};
@@ -39,6 +40,7 @@ pub(crate) use group::Group;
 pub(crate) use kick::{Kick, Momentum, kick};
 pub(crate) use p2g::{Contribution, Parts, Sum, p2g};
 pub(crate) use pairs::{sum_pairs, sums_apply};
+pub(crate) use sites::Sites;
 
 use nalgebra::SVector;
 

@@ -26,7 +26,7 @@ use std::io::{self, Read, Write};
 
 use nalgebra::SVector;
 
-use super::{Conservation, Diagnostics, Stepper};
+use super::{Conservation, Diagnostics, Stepper, domain};
 use crate::basis::BasisFamily;
 use crate::error::RestoreError;
 use crate::grid::Window;
@@ -92,6 +92,7 @@ where
         from.numbers(momentum.as_mut_slice())?;
         self.balance.momentum = known.then_some(momentum);
         self.particles.restore(&mut from, self.law.numbers())?;
+        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, |place| place)?;
         let count = self.particles.len();
         for (index, point) in self.surface.iter_mut().enumerate() {
             point.particle = from.count_below(count, "the particle of surface", index)?;
