@@ -10,8 +10,8 @@ mod start;
 
 pub(crate) use bins::settle;
 pub use bins::{Bins, Outside};
+pub(crate) use domains::DomainViews;
 pub use domains::Domains;
-pub(crate) use domains::{DomainViews, Sites};
 pub use lattice::{Lattice, lattice};
 pub(crate) use movable::{Material, ParticleViews, Places};
 

@@ -33,11 +33,10 @@ use crate::basis::BasisFamily;
 use crate::grid::{Face, Grid};
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, many_threads};
-use crate::particles::Sites;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::transfer::{Transfer, for_values};
+use crate::transfer::{Sites, Transfer, for_values};
 
 impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where

@@ -22,12 +22,12 @@ use crate::error::{SetupError, StepError};
 use crate::grid::Face;
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, worth_sharing};
-use crate::particles::{Particles, Sites};
+use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::simd::{Packs, each, in_lanes};
-use crate::transfer::{Contribution, Group, Parts, ScalarField, Transfer, for_values, g2p, p2g};
+use crate::transfer::{Contribution, Group, Parts, ScalarField, Sites, Transfer, for_values, g2p, p2g};
 use nalgebra::SVector;
 
 /// Scalars of a DOF that one sweep sums: capacity and content.

@@ -7,11 +7,10 @@ use super::{FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
 use crate::law::LawSweep;
-use crate::particles::Sites;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::transfer::{Transfer, for_values, sum_pairs, sums_apply};
+use crate::transfer::{Sites, Transfer, for_values, sum_pairs, sums_apply};
 
 /// In one dimension: share of its mass that a DOF's diagonal must hold to be solved for with its neighbours.
 /// The share is the mean value of its function over the particles: 2/3 in a full linear cell, nothing for a

@@ -19,13 +19,13 @@ use crate::error::{SetupError, StepError};
 use crate::grid::{Face, Grid};
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
-use crate::particles::Sites;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::simd::{Packs, each};
 use crate::transfer::{
-    Contribution, DofPlaces, GridVelocity, Group, Momentum, Parts, Receive, Seen, Transfer, gather, p2g,
+    Contribution, DofPlaces, GridVelocity, Group, Momentum, Parts, Receive, Seen, Sites, Transfer, gather,
+    p2g,
 };
 
 impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>

@@ -7,11 +7,11 @@ use super::sums::{InSpan, Targets, liquid_velocities};
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
 use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
-use crate::particles::{Bins, Particles, Sites};
+use crate::particles::{Bins, Particles};
 use crate::phase::Phase;
 use crate::scalar::Scalar;
 use crate::simd::{Number, Packs, each};
-use crate::transfer::{Group, Kick, Momentum, for_values, kick};
+use crate::transfer::{Group, Kick, Momentum, Sites, for_values, kick};
 
 /// The velocities of the particles of a span, of `C` phases.
 struct Velocities<'a, T: Scalar, const D: usize, P: Phase<T, D>> {

@@ -12,11 +12,11 @@ use super::spans::{Spans, Store, share};
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
 use crate::parallel::{Maybe, SpanWindow, Windows, add_up, each_span};
-use crate::particles::{Bins, Particles, Sites};
+use crate::particles::{Bins, Particles};
 use crate::phase::{OnePhase, Phase};
 use crate::scalar::Scalar;
 use crate::simd::{Packs, each, in_lanes};
-use crate::transfer::{Contribution, Group, Parts, Sum, for_values, p2g};
+use crate::transfer::{Contribution, Group, Parts, Sites, Sum, for_values, p2g};
 
 /// What particles add to DOFs: `S` of the solid's mass, the liquid's and the drag, `C` of both momenta, `G`
 /// of the forces on the whole and on the liquid.

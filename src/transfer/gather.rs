@@ -7,9 +7,9 @@ use super::Sweep;
 use super::flip::GridVelocity;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::places::DofPlaces;
+use super::sites::Sites;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
-use crate::particles::Sites;
 use crate::scalar::Scalar;
 use crate::simd::{One, Packs, dispatch_for, each};
 

@@ -4,13 +4,12 @@
 
 use nalgebra::SVector;
 
-use super::Sweep;
 use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::sums::{Parts, Sum, Sums};
+use super::{Sites, Sweep};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
-use crate::particles::Sites;
 use crate::scalar::Scalar;
 use crate::simd::{Number, One, Packs, dispatch_for, each};
 

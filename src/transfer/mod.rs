@@ -38,6 +38,7 @@ mod places;
 mod polynomials;
 mod rows;
 mod scalars;
+mod sites;
 mod sums;
 
 pub(crate) use drift::{Drift, Outcome, drift};
@@ -51,6 +52,7 @@ pub(crate) use p2g::{Contribution, Parts, Sum, p2g};
 pub(crate) use pairs::{sum_pairs, sums_apply};
 pub(crate) use places::DofPlaces;
 pub(crate) use scalars::{ScalarField, g2p};
+pub(crate) use sites::Sites;
 
 use nalgebra::SVector;
 

@@ -2,15 +2,14 @@
 
 use nalgebra::SVector;
 
-use super::Sweep;
 use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::places::DofPlaces;
 use super::sums::Sums;
 pub(crate) use super::sums::{Parts, Sum};
+use super::{Sites, Sweep};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
-use crate::particles::Sites;
 use crate::scalar::Scalar;
 use crate::simd::{One, Packs, dispatch_for};
 

@@ -5,11 +5,10 @@
 
 use nalgebra::SVector;
 
-use super::Sweep;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
+use super::{Sites, Sweep};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::grid::{Cell, Grid};
-use crate::particles::Sites;
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Lanes, Number, Packs, dispatch_for, each};
 
@@ -268,10 +267,11 @@ mod tests {
         let zeros = || Lattice::zeros(basis.dofs(&grid), basis.reach());
         let (mut found, mut expected) = (zeros(), zeros());
         assert!(sums_apply(basis, &grid));
+        let none = Domains::none();
         let sites = Sites {
             positions: &positions,
             cells: &cells,
-            domains: Domains::none().views(),
+            domains: none.views(),
         };
         sum_pairs(basis, &grid, sites, &masses, &mut |i, j, mass| {
             found.add(i, j, mass)

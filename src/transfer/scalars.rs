@@ -4,9 +4,9 @@ use nalgebra::SVector;
 
 use super::Sweep;
 use super::group::{EachGroup, Group, come_in_eights, components, each_group};
+use super::sites::Sites;
 use crate::basis::{BasisFamily, Factors};
 use crate::grid::{Cell, Grid};
-use crate::particles::Sites;
 use crate::scalar::Scalar;
 use crate::simd::{Lanes, Number, Packs, dispatch_for, each};
 

@@ -10,10 +10,11 @@ mod gimp;
 mod promises;
 mod refused;
 
-use materialpoint::basis::{BasisFamily, Linear};
+use materialpoint::basis::{AxisBasis, AxisCell, BasisFamily, Domain, Functions, Linear};
 use materialpoint::grid::{Cell, Grid};
 use materialpoint::scalar::Scalar;
-use materialpoint::testing::{BasisClaims, check_basis};
+use materialpoint::simd::{Lanes, Number};
+use materialpoint::testing::{BasisClaims, Property, check_basis};
 use nalgebra::{SMatrix, SVector, vector};
 
 use gimp::Gimp;
@@ -176,5 +177,75 @@ fn a_window_holds_the_dofs_of_every_cell_between() {
         for (low, high) in &all[first..=last] {
             assert!(window.contains(low) && window.contains(high), "{first} to {last}");
         }
+    }
+}
+
+/// What a basis can do wrong over domains and right at points.
+#[derive(Clone, Copy, Debug)]
+enum Mistake {
+    /// Values do not sum to one.
+    Sum,
+    /// Slopes are those of particles half as long.
+    Slope,
+    /// Particles are longer than they are.
+    Longer,
+    /// Particles in every other cell are shorter than they are.
+    Jump,
+    /// Boxes are cut off at the walls.
+    CutOff,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Faulty(Mistake);
+
+impl<T: Scalar> AxisBasis<T, 4> for Faulty {
+    const DOMAIN: Domain = Domain::Size { most: 0.5 };
+
+    fn dofs_on_axis(&self, cells: usize) -> usize {
+        cells + 1
+    }
+
+    fn first_dof(&self, at: AxisCell) -> usize {
+        AxisBasis::<T, 4>::first_dof(&Gimp, at)
+    }
+
+    fn evaluate<K: Lanes<T>>(&self, k: K, at: AxisCell, u: K::V) -> Functions<K::V, 4> {
+        Gimp.evaluate(k, at, u)
+    }
+
+    fn evaluate_over<K: Lanes<T>>(&self, k: K, at: AxisCell, u: K::V, l: K::V) -> Functions<K::V, 4> {
+        let half = k.splat(T::lit(0.5));
+        let mut right = Gimp.evaluate_over(k, at, u, l);
+        match self.0 {
+            Mistake::Sum => right.value[1] = right.value[1] + l * l,
+            Mistake::Slope => right.slope = Gimp.evaluate_over(k, at, u, l * half).slope,
+            Mistake::Longer => right = Gimp.evaluate_over(k, at, u, l + k.splat(T::lit(0.1))),
+            Mistake::Jump if at.cell % 2 == 1 => right = Gimp.evaluate_over(k, at, u, l * half),
+            Mistake::CutOff if at.cell == 0 => {
+                // What is left lies about another centre.
+                let less = (l - u) * (l - u).above(k.splat(T::zero())) * half;
+                right = Gimp.evaluate_over(k, at, u + less, l - less);
+            }
+            _ => {}
+        }
+        right
+    }
+}
+
+materialpoint::tensor_product_family!(Faulty, width = 4, degree = 1);
+
+#[test]
+fn mistakes_over_domains_are_found() {
+    let grid = Grid::new(vector![0.0], vector![5.0], [5]).unwrap();
+    let points: Vec<_> = (0..=50).map(|k| vector![f64::from(k) / 10.0]).collect();
+    for (mistake, property) in [
+        (Mistake::Sum, Property::PartitionOfUnity),
+        (Mistake::Slope, Property::GradientsAreDerivatives),
+        (Mistake::Longer, Property::VanishingDomain),
+        (Mistake::Jump, Property::Continuous),
+        (Mistake::CutOff, Property::Reproduces(1)),
+    ] {
+        let found = check_basis(&Faulty(mistake), &grid, &points, &BasisClaims::of_degree(1));
+        assert_eq!(found.unwrap_err().property, property, "{mistake:?}");
     }
 }

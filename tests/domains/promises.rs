@@ -317,6 +317,26 @@ fn domains_go_with_the_particles() {
     run(Corners);
 }
 
+/// Not where particles cross cells and are put in order again either.
+#[test]
+fn no_step_over_domains_allocates() {
+    fn check<B: BasisFamily<f64, 2>>(basis: B) {
+        let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let mut body = stepper(basis, Shepard, particles::<2>(9, 3));
+        let steps = one_thread.install(|| {
+            allocation_counter::measure(|| {
+                for _ in 0..100 {
+                    body.step(0.01, &Forcing::none()).unwrap();
+                }
+            })
+        });
+        assert!(body.diagnostics().grid_crossings > 100);
+        assert_eq!(steps.count_total, 0);
+    }
+    check(Gimp);
+    check(Corners);
+}
+
 /// Domains count as memory.
 #[test]
 fn bytes_count_domains() {
