@@ -213,7 +213,9 @@ pub enum StepError {
         face: Face,
     },
     /// A value at a face for what diffuses, where nothing does.
-    #[error("the face {face} has a value for what diffuses, but nothing diffuses in this phase; leave it out")]
+    #[error(
+        "the face {face} has a value for what diffuses, but nothing diffuses in this phase; leave it out"
+    )]
     ValueWithoutDiffusion {
         /// The face.
         face: Face,

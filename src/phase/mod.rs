@@ -177,7 +177,12 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
 
     /// Adds to the value of a particle what it took in, over its capacity (K of heat).
     fn add_to_value(&self, _change: T, _particle: &mut Self::Particle) {
-        const { assert!(!Self::DIFFUSES, "a phase that DIFFUSES wants an own `add_to_value`") };
+        const {
+            assert!(
+                !Self::DIFFUSES,
+                "a phase that DIFFUSES wants an own `add_to_value`"
+            )
+        };
     }
 
     /// Flux per area at a particle (W/m2 of heat) that a gradient of the value (K/m) drives, never towards
@@ -190,7 +195,12 @@ pub trait Phase<T: Scalar, const D: usize>: Send + Sync {
     /// Diffusivity (m2/s) of a particle of this `mass` (kg) and `volume` (m3): an upper bound of flux over
     /// gradient and capacity per volume, `k / (rho c)`. The stable step is taken from it.
     fn diffusivity(&self, _mass: T, _volume: T, _particle: &Self::Particle) -> T {
-        const { assert!(!Self::DIFFUSES, "a phase that DIFFUSES wants an own `diffusivity`") };
+        const {
+            assert!(
+                !Self::DIFFUSES,
+                "a phase that DIFFUSES wants an own `diffusivity`"
+            )
+        };
         T::zero()
     }
 }

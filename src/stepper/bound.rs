@@ -94,11 +94,7 @@ where
     }
 
     /// `M_i` and `W_i` of every DOF, for `m_p` and `m_p c_p^2` of every particle.
-    fn sum_masses_and_slopes(
-        &self,
-        held: &[bool],
-        amounts: impl Fn(usize) -> [T; 2] + Sync,
-    ) -> Vec<[T; 2]> {
+    fn sum_masses_and_slopes(&self, held: &[bool], amounts: impl Fn(usize) -> [T; 2] + Sync) -> Vec<[T; 2]> {
         let (basis, grid) = (&self.basis, &self.grid);
         let spans = &self.spans.particles[..];
         let (span, parallel) = share::<D>(spans, self.particles.len(), self.spans.lengths[0]);

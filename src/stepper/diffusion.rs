@@ -292,11 +292,7 @@ where
     }
 
     /// Calls `prescribe` with the DOFs of each face that has a value, and with that value.
-    fn each_prescribed(
-        &mut self,
-        forcing: &Forcing<T, D>,
-        prescribe: impl Fn(&mut Diffusion<T>, &[u32], T),
-    ) {
+    fn each_prescribed(&mut self, forcing: &Forcing<T, D>, prescribe: impl Fn(&mut Diffusion<T>, &[u32], T)) {
         for (face, dofs) in Face::all::<D>().zip(&self.face_dofs) {
             if let DiffusionCondition::Value(told) = forcing.diffusion(face) {
                 prescribe(&mut self.diffusion, dofs, told);
@@ -320,7 +316,13 @@ where
             &particles.phase[..],
             windows(spans, &mut store.scalars, targets),
         );
-        each_span(parallel, span, work, &|_, (places, (masses, volumes), data, sums)| {
+        each_span(parallel, span, work, &|_,
+                                          (
+            places,
+            (masses, volumes),
+            data,
+            sums,
+        )| {
             let [(first, capacities), (_, contents)] = sums.map(Windows::one);
             let amounts = Contents {
                 masses,
@@ -328,16 +330,10 @@ where
                 data,
                 phase,
             };
-            for_values!(B, basis, |basis| p2g(
-                basis,
-                grid,
-                places,
-                amounts,
-                |dof, sum| {
-                    capacities[dof - first] += sum.scalars[0];
-                    contents[dof - first] += sum.scalars[1];
-                }
-            ));
+            for_values!(B, basis, |basis| p2g(basis, grid, places, amounts, |dof, sum| {
+                capacities[dof - first] += sum.scalars[0];
+                contents[dof - first] += sum.scalars[1];
+            }));
         });
         let [of_capacities, of_contents, ..] = &store.scalars;
         add_up(spans, of_capacities, capacities, 1);

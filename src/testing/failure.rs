@@ -223,7 +223,9 @@ impl fmt::Display for Property {
             Self::PoreStressIsWork => "what the liquid adds to the stress works as its energy grows",
             Self::Capacity => "the capacity is positive and proportional to mass and volume",
             Self::AddsToValue => "`add_to_value` adds to the value",
-            Self::FluxOpposesGradient => "what diffuses flows against its gradient, and without one not at all",
+            Self::FluxOpposesGradient => {
+                "what diffuses flows against its gradient, and without one not at all"
+            }
             Self::Diffusivity => "flux over gradient is within the diffusivity",
         };
         f.write_str(words)

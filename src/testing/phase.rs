@@ -215,13 +215,7 @@ fn zero_increment<T: Scalar, const D: usize, P: Phase<T, D>>(
         }
         if P::DIFFUSES {
             let (old, new) = (phase.value(&before), phase.value(&after));
-            near(
-                property,
-                || Place::Everywhere,
-                old,
-                new,
-                old.abs() * round_off(),
-            )?;
+            near(property, || Place::Everywhere, old, new, old.abs() * round_off())?;
         }
     }
     Ok(())

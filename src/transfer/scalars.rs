@@ -129,11 +129,14 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>> ScalarField<'a, T, D, 
     /// The same at one, of a basis that is no product.
     fn gradient_at(&self, p: usize) -> SVector<T, D> {
         let (sweep, mut sum) = (&self.sweep, SVector::zeros());
-        sweep
-            .basis
-            .for_each(sweep.grid, &self.cells[p], &self.positions[p], |i, _, gradient| {
+        sweep.basis.for_each(
+            sweep.grid,
+            &self.cells[p],
+            &self.positions[p],
+            |i, _, gradient| {
                 sum += gradient * self.dofs[i];
-            });
+            },
+        );
         sum
     }
 }

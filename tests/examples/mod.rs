@@ -7,6 +7,8 @@ mod cam_clay;
 pub mod derivative;
 #[path = "../../examples/fit_field.rs"]
 mod fit_field;
+#[path = "../../examples/heat.rs"]
+mod heat;
 #[path = "../../examples/linear_taylor.rs"]
 mod linear_taylor;
 // Its runs serve `hard_cases` too, and so does the bar of `stability_map`.
@@ -28,6 +30,8 @@ mod thermo_elastic;
 mod vibrating_bar;
 #[path = "../../examples/virtual_points.rs"]
 mod virtual_points;
+
+mod diffusion;
 
 #[test]
 fn the_bar_meets_the_exact_solution() {
@@ -614,14 +618,14 @@ fn the_thermal_example_prints_what_theory_says() {
 fn the_pages_show_the_examples_as_they_are() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
-    let examples = read("examples/own_law.rs") + &read("examples/own_basis.rs");
+    let examples = read("examples/own_law.rs") + &read("examples/own_basis.rs") + &read("examples/heat.rs");
     let page = read("docs/guide/own-types.md");
     let shown: Vec<&str> = page
         .split("```rust\n")
         .skip(1)
         .filter_map(|rest| rest.split("```").next())
         .collect();
-    assert_eq!(shown.len(), 2);
+    assert_eq!(shown.len(), 3);
     for part in shown {
         assert!(examples.contains(part), "{part}");
     }
