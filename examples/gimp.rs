@@ -7,7 +7,6 @@ use std::error::Error;
 use materialpoint::basis::{AxisBasis, AxisCell, BasisFamily, Domain, Functions, Linear};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::Particles;
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Shepard;

@@ -141,7 +141,7 @@ impl<T, const D: usize> Parts<T, D> {
     {
         reconstruction.lend_virtual_points(self.virtual_points);
         let pores = P::FLOWS.then_some(self.pores);
-        let particles = made_of(self.particles, (pores, data), &self.law, self.under_stress)?;
+        let particles = made_of(self.particles, pores, data, &self.law, self.under_stress)?;
         let setup = Setup::new(self.grid, basis, reconstruction, self.law, phase, particles);
         let setup = setup
             .with_velocity_mass(self.velocity_mass)
@@ -155,7 +155,8 @@ impl<T, const D: usize> Parts<T, D> {
 #[inline(never)]
 fn made_of<T, const D: usize, Q>(
     particles: Particles<f64, D>,
-    (pores, data): (Option<Vec<PoreLiquid<f64, D>>>, fn(PoreLiquid<f64, D>) -> Q),
+    pores: Option<Vec<PoreLiquid<f64, D>>>,
+    data: fn(PoreLiquid<f64, D>) -> Q,
     law: &AnyLaw<T, D>,
     under_stress: bool,
 ) -> Result<Particles<T, D, T, Q>, SetupError>

@@ -5,7 +5,6 @@ use std::array::from_fn;
 use materialpoint::basis::{BasisFamily, Domain, FixedPoints};
 use materialpoint::grid::{Cell, Face, Grid};
 use materialpoint::law::{Moduli, NeoHookean};
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Reconstruction;

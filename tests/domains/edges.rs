@@ -5,7 +5,6 @@ use std::array::from_fn;
 use materialpoint::basis::{BasisFamily, Domain};
 use materialpoint::grid::{Cell, Grid};
 use materialpoint::law::ConstitutiveLaw;
-use materialpoint::mass::VelocityMass;
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Shepard;
 use materialpoint::scalar::Scalar;

@@ -5,7 +5,6 @@ use std::any::type_name;
 use materialpoint::basis::{BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::Particles;
 use materialpoint::phase::{OnePhase, TwoPhase};
 use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor, Shepard, Taylor};

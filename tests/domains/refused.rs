@@ -4,7 +4,6 @@ use materialpoint::basis::Linear;
 use materialpoint::error::SetupError;
 use materialpoint::grid::Grid;
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::Particles;
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor, Shepard};

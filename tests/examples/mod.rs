@@ -9,6 +9,8 @@ mod cam_clay;
 pub mod derivative;
 #[path = "../../examples/fit_field.rs"]
 mod fit_field;
+#[path = "../../examples/heat.rs"]
+mod heat;
 #[path = "../../examples/linear_taylor.rs"]
 mod linear_taylor;
 // Its runs serve `hard_cases` too, and so does the bar of `stability_map`.
@@ -30,6 +32,8 @@ mod thermo_elastic;
 mod vibrating_bar;
 #[path = "../../examples/virtual_points.rs"]
 mod virtual_points;
+
+mod diffusion;
 
 #[test]
 fn the_bar_meets_the_exact_solution() {
@@ -616,7 +620,7 @@ fn the_thermal_example_prints_what_theory_says() {
 fn the_pages_show_the_examples_as_they_are() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
-    let files = ["own_law", "own_basis", "apic"].map(|name| read(&format!("examples/{name}.rs")));
+    let files = ["own_law", "own_basis", "apic", "heat"].map(|name| read(&format!("examples/{name}.rs")));
     let examples = files.concat();
     let page = read("docs/guide/own-types.md");
     let shown: Vec<&str> = page
@@ -624,7 +628,7 @@ fn the_pages_show_the_examples_as_they_are() {
         .skip(1)
         .filter_map(|rest| rest.split("```").next())
         .collect();
-    assert_eq!(shown.len(), 3);
+    assert_eq!(shown.len(), 4);
     for part in shown {
         assert!(examples.contains(part), "{part}");
     }

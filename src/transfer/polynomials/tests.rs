@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use crate::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use crate::field::{Field, MassMomentum, Symmetric};
 use crate::grid::Grid;
-use crate::particles::{Bins, lattice};
+use crate::particles::{Bins, Domains, lattice};
 use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Stresses, Taylor, Values};
 use crate::transfer::{
     Fits, Integrand, MassesAndMomenta, Parts, Stress, Sum, Sweep, at_fixed_points, components_of,
@@ -58,8 +58,10 @@ where
         }
     };
     let [by_matrices, by_points] = &mut found;
+    let none = Domains::none();
     let fits = Fits {
         moving: basis,
+        domains: none.views(),
         reconstruction: taylor,
         cloud,
         cells: 0..cloud.bins.occupied().len(),

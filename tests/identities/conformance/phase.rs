@@ -314,7 +314,7 @@ enum Leak {
     Sign,
     /// A flux without a gradient.
     Drifts,
-    /// A flux across the gradient that is larger along it than against it.
+    /// The flux runs up the gradient along all axes but the first.
     Skew,
     /// The conductivity where the diffusivity is asked for, which is a part of it.
     DiffusivityPerMass,
