@@ -256,10 +256,12 @@ fn reason(error: &StepError) -> String {
         StepError::Stress { .. } => "stress beyond E".into(),
         StepError::Invalid { name, value, .. } => format!("{name} {value:.1e}"),
         StepError::StepSize { .. } => "step".into(),
-        StepError::Friction { .. }
+        StepError::DiffusingValue { .. }
+        | StepError::Friction { .. }
         | StepError::FrictionWithFlow { .. }
         | StepError::PressureWithoutFlow { .. }
         | StepError::RubbingAcross { .. }
+        | StepError::ValueWithoutDiffusion { .. }
         | StepError::WallNotHeld { .. } => "wall".into(),
     }
 }
