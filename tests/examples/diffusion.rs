@@ -144,8 +144,9 @@ where
         grid,
         basis: method.0,
         reconstruction: method.1,
+        // Soft, so that the waves of fits in partly filled cells, which nothing excites, bear the step.
         law: LinearElastic {
-            moduli: Moduli::uniaxial(YOUNGS_MODULUS).unwrap(),
+            moduli: Moduli::uniaxial(1e-6 * YOUNGS_MODULUS).unwrap(),
         },
         phase: aluminium(false),
         velocity_mass: VelocityMass::Lumped,
@@ -227,8 +228,8 @@ fn a_block_that_slides_keeps_its_temperature() {
 #[test]
 fn the_warmed_bar_is_stressed_or_expands() {
     let found = run().unwrap();
-    for (dimension, amplitude) in found.decayed.into_iter().enumerate() {
-        let error = amplitude * 1.0_f64.exp() - 1.0;
+    for (dimension, left) in found.decayed.into_iter().enumerate() {
+        let error = left.amplitude * 1.0_f64.exp() - 1.0;
         assert!(
             error.abs() < (PI / 20.0).powi(2),
             "{error:e} along {}",
