@@ -226,8 +226,8 @@ pub struct Decayed<T> {
     pub steps: usize,
 }
 
-/// What is left of the cosine, of an insulated body that fills so many cells along each side, after the time in
-/// which that of aluminium decays to `1/e`: `D kappa (pi/L)^2 t = 1`.
+/// What is left of the cosine, of an insulated body that fills so many cells along each side, after the time
+/// in which that of aluminium decays to `1/e`: `D kappa (pi/L)^2 t = 1`.
 pub fn decayed<T, const D: usize, B, R>(
     method: (B, R),
     cells: usize,
@@ -320,8 +320,8 @@ pub fn warmed(between_walls: bool) -> Result<Warmed, Box<dyn Error>> {
 /// What was found.
 #[derive(Clone, Copy, Debug)]
 pub struct Findings {
-    /// Amplitudes of the cosine in the bar and in the plate when `1/e` is left.
-    pub decayed: [f64; 2],
+    /// The cosine in the bar and in the plate when `1/e` is left.
+    pub decayed: [Decayed<f64>; 2],
     /// The bar between walls, and held at one end.
     pub warmed: [Warmed; 2],
 }
@@ -330,8 +330,8 @@ pub struct Findings {
 pub fn run() -> Result<Findings, Box<dyn Error>> {
     Ok(Findings {
         decayed: [
-            decayed::<f64, 1, _, _>((Linear, Shepard), 20, aluminium(false))?.amplitude,
-            decayed::<f64, 2, _, _>((Linear, Shepard), 20, aluminium(false))?.amplitude,
+            decayed::<f64, 1, _, _>((Linear, Shepard), 20, aluminium(false))?,
+            decayed::<f64, 2, _, _>((Linear, Shepard), 20, aluminium(false))?,
         ],
         warmed: [warmed(true)?, warmed(false)?],
     })
@@ -341,8 +341,10 @@ pub fn run() -> Result<Findings, Box<dyn Error>> {
 #[allow(dead_code)]
 fn main() -> Result<(), Box<dyn Error>> {
     let Findings { decayed, warmed } = run()?;
-    let [bar, plate] = decayed.map(|amplitude| amplitude * 1.0_f64.exp());
-    println!("of the cosine {bar:.4} of what theory says is left in the bar, {plate:.4} in the plate");
+    for (body, Decayed { amplitude, steps }) in ["bar", "plate"].into_iter().zip(decayed) {
+        let share = amplitude * 1.0_f64.exp();
+        println!("after {steps} steps {share:.4} of what theory says is left of the cosine in the {body}");
+    }
     let [held, free] = warmed;
     let [low, high] = held.temperature;
     println!("the temperature of the bar becomes even, {low:.4} to {high:.4} K");

@@ -138,21 +138,12 @@ where
     particles
         .velocity
         .fill(SVector::from_fn(|a, _| 200.0 / (1 + a) as f64));
-    let surface = Vec::new();
-    Stepper::new(
-        Setup::new(
-            grid,
-            method.0,
-            method.1,
-            LinearElastic {
-                moduli: Moduli::uniaxial(YOUNGS_MODULUS).unwrap(),
-            },
-            aluminium(false),
-            particles,
-        )
-        .with_surface(surface),
-    )
-    .unwrap()
+    // Soft, so that the waves of fits in partly filled cells, which nothing excites, bear the step.
+    let law = LinearElastic {
+        moduli: Moduli::uniaxial(1e-6 * YOUNGS_MODULUS).unwrap(),
+    };
+    let setup = Setup::new(grid, method.0, method.1, law, aluminium(false), particles);
+    Stepper::new(setup).unwrap()
 }
 
 /// A step (s) within the bound of any layout seen here.
@@ -227,8 +218,8 @@ fn a_block_that_slides_keeps_its_temperature() {
 #[test]
 fn the_warmed_bar_is_stressed_or_expands() {
     let found = run().unwrap();
-    for (dimension, amplitude) in found.decayed.into_iter().enumerate() {
-        let error = amplitude * 1.0_f64.exp() - 1.0;
+    for (dimension, left) in found.decayed.into_iter().enumerate() {
+        let error = left.amplitude * 1.0_f64.exp() - 1.0;
         assert!(
             error.abs() < (PI / 20.0).powi(2),
             "{error:e} along {}",

@@ -78,6 +78,7 @@ fn explicit_drag_is_stable_below_the_predicted_step_and_not_above() {
                     assert!(stable(0.95), "{method} k = {permeability:.0e}");
                     assert!(!stable(1.08), "{method} k = {permeability:.0e}");
                 }
+                Mechanism::Diffusion => panic!("{method}: nothing diffuses"),
             }
         }
     }
