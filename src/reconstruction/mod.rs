@@ -125,6 +125,7 @@ pub(crate) fn batch_of_cells<T: Scalar, const D: usize>(
     )
 }
 
+#[doc(hidden)]
 /// What became of four cells that were streamed at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BatchStatus {
@@ -134,6 +135,7 @@ pub struct BatchStatus {
     pub reduced: usize,
 }
 
+#[doc(hidden)]
 /// What is kept of four cells from the first fit of a step to the second.
 #[derive(Debug)]
 pub struct Kept<'a, T> {
@@ -222,6 +224,9 @@ pub struct CourantNumbers<T> {
 /// constant without its method, or constants that contradict each other, are errors at compile time, as soon
 /// as a stepper is made of the type. [`crate::testing::check_reconstruction`] checks that all methods stream
 /// what `integrate` and `integrate_conserved` do.
+///
+/// Items that are hidden from the documentation serve the sweeps of the library's own fits; nobody else needs
+/// them, and they may change with any version.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not reconstruct scalar `{T}` in `{D}` dimensions",
     note = "CubicSpline is global and exists in 1-D only; Taylor<T, D, NB> takes NB = 3, 6, 10 for D = 1, 2, 3"
@@ -249,10 +254,12 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     /// Whether [`Reconstruction::relax`] does anything.
     const RELAXES: bool = false;
 
+    #[doc(hidden)]
     /// Whether four cells can be streamed at once without [`Reconstruction::prepare`]
     /// ([`Reconstruction::integrate_batch`]).
     const BATCHED: bool = false;
 
+    #[doc(hidden)]
     /// Numbers of each of four cells that [`Reconstruction::integrate_batch`] keeps where it does not
     /// conserve, and takes up again where it does.
     const KEPT: usize = 0;
@@ -261,6 +268,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     #[doc(hidden)]
     const FITS_TAYLOR: bool = false;
 
+    #[doc(hidden)]
     /// Whether [`Reconstruction::integrate_batch`] wants what [`Reconstruction::prepare`] and
     /// [`Reconstruction::fit_field`] took in.
     const NON_LOCAL: bool = false;
@@ -286,9 +294,11 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         sink: impl FnMut(&Point<T, D>, Q),
     );
 
+    #[doc(hidden)]
     /// A liquid flows: its pressure will be reconstructed with the stress.
     fn configure_for_saturated(&mut self) {}
 
+    #[doc(hidden)]
     /// Takes in the field that [`Reconstruction::integrate_cells`] or [`Reconstruction::integrate_batch`]
     /// will stream next, where a cell's fit wants the values of its neighbours.
     fn fit_field<Q: Field<T>>(&mut self, _cloud: &Cloud<'_, T, D>, _value: &(impl Values<T, Q> + Sync)) {
@@ -324,6 +334,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         };
     }
 
+    #[doc(hidden)]
     /// Coordinates in a cell, each in `[-1, 1]`, of the points along an axis whose products
     /// [`Reconstruction::integrate_batch`] streams, axis 0 fastest; none if it cannot as it is set up.
     fn line(&self) -> impl Iterator<Item = T> {
@@ -331,6 +342,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         std::iter::empty()
     }
 
+    #[doc(hidden)]
     /// What [`Reconstruction::integrate_conserved`] streams, if `conserve`, or else
     /// [`Reconstruction::integrate`], in up to four `cells`, places in the list of occupied ones from a
     /// multiple of four on: one cell in each lane, the number of the point and the components of the value.
@@ -373,6 +385,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         std::iter::empty()
     }
 
+    #[doc(hidden)]
     /// [`Reconstruction::integrate_batch`] in one cell that is given by its number, point by point; returns whether it was fitted with
     /// the full set of functions.
     fn integrate_single<Q: Field<T>>(
@@ -435,6 +448,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         0
     }
 
+    #[doc(hidden)]
     /// Whether cells may borrow virtual points, where the reconstruction knows any
     /// ([`Taylor::with_virtual_points`]).
     fn lend_virtual_points(&mut self, _lent: bool) {}

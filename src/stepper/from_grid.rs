@@ -39,7 +39,7 @@ where
 {
     /// Velocities of the DOFs from those of the particles, kicked by the accelerations. Compares what was
     /// mapped with what the particles have.
-    pub(super) fn kick_dofs(&mut self, dt: T, forcing: &Forcing<T, D>) {
+    pub(super) fn map_and_kick_dofs(&mut self, dt: T, forcing: &Forcing<T, D>) {
         let before = self.momentum_before();
         if const { X::AFFINE } {
             self.sum_affine_momenta();

@@ -53,6 +53,7 @@ mod relax;
 mod setup;
 mod simulation;
 mod spans;
+mod stages;
 mod step;
 mod sums;
 mod velocity;

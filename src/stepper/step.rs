@@ -1,27 +1,17 @@
 //! One step, as a list of stages.
 //!
-//! Every method, phase and dimension takes the stages of this list and no other way; a stage that has nothing
-//! to do for a type compiles to nothing. What each stage does is in the file of its name.
+//! Every method, phase, transfer and dimension takes the stages of this list and no other way; what a stage is
+//! for the types of a stepper stands in `stages`, and the work in the file of its name. A stage that has
+//! nothing to do for a type compiles to nothing.
 
-use super::acceleration::{Walls, accelerate};
-use super::dofs::MassModel;
-use super::drift::{Matter, move_particles};
-use super::fitted::{DensitiesOfBoth, Fitted, StressAndPressure, densities};
 use super::forcing::Forcing;
-use super::kick::kick_particles;
-use super::liquid::UniformLoad;
-use super::spans::{Fault, Totals};
-use super::sums::{Targets, first, sum_particles};
-use super::velocity::divide_by_mass;
-use super::{Energy, Stepper, cloud};
+use super::{Energy, Stepper};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
-use crate::field::{MassMomentum, Symmetric};
 use crate::law::LawSweep;
 use crate::phase::Phase;
-use crate::reconstruction::{Reconstruction, Stresses};
+use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::transfer::Drift;
 use crate::transfer::Transfer;
 
 impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
@@ -41,323 +31,29 @@ where
         measure: bool,
     ) -> Result<Energy<T>, StepError> {
         self.prepare();
-        if !measure {
-            self.kick(kick, forcing);
-            self.diffuse(dt, forcing)?;
-            return self.drift(dt).map(|()| Energy::none());
-        }
-        let (strain, before) = (self.strain_energy(), self.velocities());
+        let before = measure.then(|| (self.strain_energy(), self.velocities()));
         self.kick(kick, forcing);
-        let kinetic = self.kinetic_energy_across(&before);
+        let energy = before.map_or_else(Energy::none, |(strain, velocities)| Energy {
+            kinetic: self.kinetic_energy_across(&velocities),
+            strain,
+        });
         self.diffuse(dt, forcing)?;
         self.drift(dt)?;
-        Ok(Energy { kinetic, strain })
+        Ok(energy)
     }
 
     /// Velocities of particles and DOFs.
     fn kick(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        if const { !P::FLOWS } {
-            self.balance.begin(&self.particles.velocity, &self.particles.mass);
-        }
+        self.begin_balance();
         self.p2g(dt, forcing);
         self.add_loads(forcing);
         self.accelerate(dt, forcing);
-        if const { X::FROM_GRID } {
-            self.kick_dofs(dt, forcing);
-        }
+        self.kick_dofs(dt, forcing);
         let totals = self.update_velocities(dt);
         self.filter(dt);
-        if const { !X::FROM_GRID } {
-            let mapped = self.map_momenta();
-            self.record(&totals, mapped);
-        }
-        if const { !P::FLOWS } {
-            let after = &totals.momenta[0];
-            self.balance
-                .close(dt, &forcing.body_force, after, &mut self.diagnostics);
-        }
-        if const { !X::FROM_GRID } {
-            self.solve_velocities(dt, forcing);
-            self.apply_wall_contact(forcing);
-        }
-    }
-
-    /// Velocities of the particles: by the accelerations, or from the grid.
-    fn update_velocities(&mut self, dt: T) -> Totals<T, D> {
-        if const { X::FROM_GRID } {
-            self.take_from_grid(dt)
-        } else {
-            self.kick_particles(dt)
-        }
-    }
-
-    /// Positions, strains and stresses of the particles.
-    fn drift(&mut self, dt: T) -> Result<(), StepError> {
-        self.steps += 1;
-        self.time += dt;
-        let matter = Matter {
-            law: &self.law,
-            phase: &self.phase,
-        };
-        let velocities = [&self.dofs.velocity[..], &self.liquid.velocity[..]];
-        let space = (&self.basis, &self.grid, &mut self.bins);
-        let (particles, spans) = (&mut self.particles, &mut self.spans);
-        if const { P::FLOWS } {
-            move_particles(space, particles, &matter, &Drift { velocities, dt }, spans);
-        } else {
-            let velocities = [velocities[0]];
-            move_particles(space, particles, &matter, &Drift { velocities, dt }, spans);
-        }
-        self.account_for_moves()
-    }
-
-    /// Masses and forces of the DOFs; with a liquid that flows drag and velocities at the step's start too.
-    fn p2g(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        let even = self.uniform_load(forcing);
-        if const { P::FLOWS } {
-            self.find_seals(forcing);
-        }
-        match const { (R::PLAIN, P::FLOWS, R::AMOUNTS_AT_PARTICLES) } {
-            (true, false, _) => self.sum::<1, 0, 1>(even),
-            (true, true, _) => self.sum::<3, 2, 2>(even),
-            (false, false, _) => self.sum::<1, 0, 0>(even),
-            (false, true, false) => self.sum::<3, 0, 0>(even),
-            (false, true, true) => self.sum::<3, 2, 0>(even),
-        }
-        if const { R::PARTICLE_MATRIX } {
-            self.assemble_matrices();
-        }
-        if const { !R::PLAIN } {
-            self.integrate_forces(even);
-        }
-        if const { P::FLOWS } {
-            self.map_both_before(dt, forcing);
-        }
-    }
-
-    /// Sums over the particles.
-    fn sum<const S: usize, const C: usize, const G: usize>(&mut self, even: UniformLoad<T>) {
-        let targets: Targets<'_, T, D, S, C, G> =
-            Targets::new(&mut self.dofs, &mut self.liquid, &mut self.drag);
-        sum_particles(
-            (&self.basis, &self.grid, &self.bins),
-            &self.particles,
-            (&self.phase, even, None),
-            &mut self.spans,
-            targets,
-        );
-    }
-
-    /// Counts crossings; the error is that of the first particle at fault.
-    fn account_for_moves(&mut self) -> Result<(), StepError> {
-        let moved = &self.spans.moved;
-        let crossings = moved.iter().map(|span| span.crossings).sum();
-        let fault = moved.iter().find_map(|span| span.fault);
-        self.strayed |= moved.iter().any(|span| span.strayed);
-        self.diagnostics.grid_crossings += crossings;
-        self.bins.note_crossings(crossings);
-        self.order.note_crossings(crossings);
-        self.spans.stale |= crossings > 0;
-        match fault {
-            None => Ok(()),
-            Some(Fault::Material(p, flaw)) => {
-                Err(flaw.error(self.steps, self.order.number(p), self.law.limits()))
-            }
-            Some(Fault::Left(p)) => Err(self.left(p)),
-        }
-    }
-
-    /// Forces from fits of the stress.
-    #[inline(never)]
-    fn integrate_forces(&mut self, even: UniformLoad<T>) {
-        let (effective, data, phase) = (&self.particles.stress[..], &self.particles.phase[..], &self.phase);
-        let batched = self.batched();
-        let fitted = Fitted {
-            basis: &self.basis,
-            cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
-            domains: self.particles.domains.views(),
-            reconstruction: &mut self.reconstruction,
-            spans: &mut self.spans,
-            batched,
-        };
-        let forces = [&mut self.dofs.force[..], &mut self.liquid.force[..]];
-        // Three closures rather than one with branches: what a closure holds costs instructions even where it
-        // is not used.
-        if const { P::FLOWS } {
-            let rest = |p: usize| -> StressAndPressure<T, D> { even.rest(phase, &effective[p], &data[p]) };
-            fitted.forces::<2>(rest, Targets::<T, D, 0, 0, 2>::of_forces(forces));
-        } else if const { P::COUPLED } {
-            let total = |p: usize| Symmetric(phase.total_stress(&effective[p], &data[p]));
-            fitted.forces::<1>(total, Targets::<T, D, 0, 0, 1>::of_forces(first(forces)));
-        } else {
-            fitted.forces::<1>(
-                Stresses(effective),
-                Targets::<T, D, 0, 0, 1>::of_forces(first(forces)),
-            );
-        }
-        if batched && !R::NON_LOCAL {
-            let reduced = self.spans.reduced.iter().sum();
-            self.diagnostics.record_reduced(reduced);
-        }
-    }
-
-    /// Loads of surfaces, and body forces that differ from particle to particle.
-    fn add_loads(&mut self, forcing: &Forcing<T, D>) {
-        if const { P::FLOWS } {
-            let even = self.uniform_load(forcing);
-            self.add_surface_loads(&even, forcing);
-        } else {
-            self.add_tractions(forcing);
-        }
-        if !self.body_forces.is_empty() {
-            self.add_body_forces();
-        }
-    }
-
-    /// Forces to accelerations.
-    fn accelerate(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        if const { P::FLOWS } {
-            self.accelerate_both(dt, forcing);
-        } else {
-            let walls = Walls::of_solid(&self.face_dofs, forcing);
-            accelerate(&mut self.dofs, self.mass, &walls, &mut self.balance);
-        }
-    }
-
-    /// Velocities of the particles, and the momenta of the DOFs where those of the particles are simply
-    /// summed.
-    pub(super) fn kick_particles(&mut self, dt: T) -> Totals<T, D> {
-        match const { (P::FLOWS, R::AMOUNTS_AT_PARTICLES && !R::RELAXES) } {
-            (false, false) => self.kick_phases::<1, 0>(dt),
-            (false, true) => self.kick_phases::<1, 1>(dt),
-            (true, false) => self.kick_phases::<2, 0>(dt),
-            (true, true) => self.kick_phases::<2, 2>(dt),
-        }
-    }
-
-    pub(super) fn kick_phases<const C: usize, const M: usize>(&mut self, dt: T) -> Totals<T, D> {
-        let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
-        let momenta =
-            Targets::<T, D, 0, M, 0>::of_momenta(first([&mut solid.velocity[..], &mut liquid.velocity[..]]));
-        kick_particles::<_, D, _, _, _, C, M>(
-            (&self.basis, &self.grid, &self.bins),
-            &mut self.particles,
-            (&self.phase, dt),
-            first([&solid.force[..], &liquid.force[..]]),
-            &mut self.spans,
-            momenta,
-        )
-    }
-
-    /// The reconstruction's touch on the particles.
-    fn filter(&mut self, dt: T) {
-        if const { R::RELAXES && P::FLOWS } {
-            self.relax_both(dt);
-        } else if const { R::RELAXES } {
-            self.relax(dt);
-        }
-    }
-
-    /// Momenta and masses of the DOFs; returns their totals, of both phases.
-    pub(super) fn map_momenta(&mut self) -> [MassMomentum<T, D>; 2] {
-        match const { (R::AMOUNTS_AT_PARTICLES, R::RELAXES, P::FLOWS) } {
-            (true, false, _) => {}
-            (true, true, false) => self.sum_momenta::<1>(),
-            (true, true, true) => self.sum_momenta::<2>(),
-            (false, _, _) => self.fit_momenta(!P::FLOWS),
-        }
-        self.mapped_totals()
-    }
-
-    /// Masses of the DOFs of the solid alone.
-    pub(super) fn sum_solid_masses(&mut self) {
-        if const { R::PARTICLE_MATRIX } {
-            self.assemble_particle_matrix();
-        }
-        self.sum::<1, 0, 0>(UniformLoad::none());
-    }
-
-    /// Momenta and masses of the DOFs of the solid alone, from the velocities as they are.
-    pub(super) fn map_solid(&mut self) {
-        match const { R::AMOUNTS_AT_PARTICLES } {
-            true => self.sum_momenta::<1>(),
-            false => self.fit_momenta(true),
-        }
-    }
-
-    /// Momenta of the DOFs straight from the particles, of the first so many phases.
-    fn sum_momenta<const C: usize>(&mut self) {
-        // Those of the matrices: a volume that was relaxed meanwhile holds another mass.
-        let liquid_masses = const { C > 1 }.then_some(self.joint.liquid_masses());
-        let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
-        let momenta = Targets::<'_, T, D, 0, C, 0>::of_momenta(first([
-            &mut solid.velocity[..],
-            &mut liquid.velocity[..],
-        ]));
-        sum_particles(
-            (&self.basis, &self.grid, &self.bins),
-            &self.particles,
-            (&self.phase, UniformLoad::none(), liquid_masses),
-            &mut self.spans,
-            momenta,
-        );
-    }
-
-    /// Momenta of the DOFs from fits of densities and, if `masses`, what divides them.
-    pub(super) fn fit_momenta(&mut self, masses: bool) {
-        let lumped = self.mass == MassModel::FittedLumped;
-        let batched = self.batched();
-        let fitted = Fitted {
-            basis: &self.basis,
-            cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
-            domains: self.particles.domains.views(),
-            reconstruction: &mut self.reconstruction,
-            spans: &mut self.spans,
-            batched,
-        };
-        let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
-        if const { P::FLOWS } {
-            let both = DensitiesOfBoth {
-                solid: densities(&self.particles),
-                data: &self.particles.phase,
-                phase: &self.phase,
-            };
-            match (masses, lumped) {
-                (false, _) => fitted.lumped::<_, 0, 2>(both, Targets::fitted(solid, liquid)),
-                (true, true) => fitted.lumped::<_, 2, 2>(both, Targets::fitted(solid, liquid)),
-                (true, false) => fitted.matrices(both, [solid, liquid]),
-            }
-        } else if lumped {
-            fitted.lumped::<_, 1, 1>(densities(&self.particles), Targets::fitted(solid, liquid));
-        } else {
-            fitted.matrices(densities(&self.particles), [solid]);
-        }
-        if masses && !lumped {
-            self.dofs.matrix.complete(None);
-            if const { P::FLOWS } {
-                self.liquid.matrix.complete(None);
-            }
-        }
-    }
-
-    /// Total mass and momentum of the DOFs, of both phases.
-    fn mapped_totals(&self) -> [MassMomentum<T, D>; 2] {
-        [&self.dofs, &self.liquid].map(|dofs| dofs.mapped_totals(self.mass))
-    }
-
-    /// Compares what was mapped with what the particles have.
-    pub(super) fn record(&mut self, totals: &Totals<T, D>, mapped: [MassMomentum<T, D>; 2]) {
-        self.diagnostics.record(totals, mapped);
-    }
-
-    /// Momenta to velocities of the DOFs.
-    fn solve_velocities(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        if const { P::FLOWS } {
-            self.divide_both(dt, forcing, false);
-        } else {
-            let walls = Walls::of_solid(&self.face_dofs, forcing);
-            // The particles' matrix is the one that the accelerations were solved with.
-            divide_by_mass(&mut self.dofs, self.mass, &walls, !R::PARTICLE_MATRIX);
-        }
+        self.map_momenta_of(&totals);
+        self.close_balance(dt, forcing, &totals);
+        self.solve_velocities(dt, forcing);
+        self.apply_wall_contact(forcing);
     }
 }

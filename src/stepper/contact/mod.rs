@@ -209,7 +209,7 @@ where
     /// Lets the walls act on particles and DOFs, whose velocities are those that the step would have without
     /// them.
     pub(super) fn apply_wall_contact(&mut self, forcing: &Forcing<T, D>) {
-        if Wall::<T, D>::are_there(forcing) {
+        if const { !X::FROM_GRID } && Wall::<T, D>::are_there(forcing) {
             self.apply_contact_with(forcing);
         }
     }
