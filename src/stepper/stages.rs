@@ -1,5 +1,5 @@
-//! What each stage of a step is for the types of a stepper: the one place where these are asked. The list is in
-//! `step`.
+//! What each stage of a step is for the types of a stepper: the one place where these are asked. The list is
+//! in `step`.
 
 use super::acceleration::{Walls, accelerate};
 use super::dofs::MassModel;
@@ -45,8 +45,8 @@ where
         }
     }
 
-    /// Momenta and masses of the DOFs, compared with what the particles have; where these took theirs from the
-    /// grid the DOFs have them.
+    /// Momenta and masses of the DOFs, compared with what the particles have; where these took theirs from
+    /// the grid the DOFs have them.
     pub(super) fn map_momenta_of(&mut self, totals: &Totals<T, D>) {
         if const { !X::FROM_GRID } {
             let mapped = self.map_momenta();

@@ -1,7 +1,7 @@
 //! One step, as a list of stages.
 //!
-//! Every method, phase, transfer and dimension takes the stages of this list and no other way; what a stage is
-//! for the types of a stepper stands in `stages`, and the work in the file of its name. A stage that has
+//! Every method, phase, transfer and dimension takes the stages of this list and no other way; what a stage
+//! is for the types of a stepper stands in `stages`, and the work in the file of its name. A stage that has
 //! nothing to do for a type compiles to nothing.
 
 use super::forcing::Forcing;
