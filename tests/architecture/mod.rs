@@ -89,8 +89,8 @@ fn no_folder_calls_one_below_it() {
     assert!(seen > 300, "{seen}");
 }
 
-/// Nobody but the stepper calls the sweeps, but for the check of a transfer, and scenes and files know nothing
-/// of each other.
+/// Nobody but the stepper and the check of a transfer calls the sweeps; scenes and files know nothing of each
+/// other.
 #[test]
 fn the_command_has_no_circle() {
     for (from, to, path) in calls("src", &["command", "steppers", "lib"]) {
