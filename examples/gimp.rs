@@ -115,8 +115,8 @@ impl<T: Scalar> AxisBasis<T, 4> for Gimp {
 // In every dimension: the product of the one-axis functions.
 materialpoint::tensor_product_family!(Gimp, width = 4, degree = 1);
 
-/// A bar under even tension that flies through the grid, in balance with the tractions at its ends: its stress
-/// stays what it is. Returns the largest relative error of the stress of a flight across four cells.
+/// A bar under even tension that flies through the grid, in balance with the tractions at its ends: its
+/// stress stays what it is. Returns the largest relative error of the stress of a flight across four cells.
 ///
 /// There are 3 1/3 particles a cell, so that with functions at points a node feels now more of them on one
 /// side, now on the other (grid crossing noise). Boxes that fill the bar leave no force between them.

@@ -53,9 +53,9 @@ impl<T: Scalar, const N: usize> Interpolant<T, N> {
     }
 }
 
-/// Where the DOFs of the whole grid lie along `axis` (m): the places `x_i` with `sum_i phi_i x_i = x`. Nodes of
-/// hats, Greville abscissae of splines, and for functions of another kind what they say themselves. `None` if
-/// there are none: then the functions do not reproduce linear ones, or are no products along the axes.
+/// Where the DOFs of the whole grid lie along `axis` (m): the places `x_i` with `sum_i phi_i x_i = x`. Nodes
+/// of hats, Greville abscissae of splines, and for functions of another kind what they say themselves. `None`
+/// if there are none: then the functions do not reproduce linear ones, or are no products along the axes.
 pub(crate) fn places_along<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,

@@ -1,8 +1,8 @@
 //! Basis families: which degrees of freedom (DOFs) a point sees, with value and gradient.
 //!
 //! Every family here is a tensor product of one-axis families ([`AxisBasis`]); a family of your own either
-//! does the same in a few lines (see `examples/own_basis.rs`) or implements [`BasisFamily`] directly. A family
-//! may average its functions over the particles' domains ([`Domain`], `examples/gimp.rs`).
+//! does the same in a few lines (see `examples/own_basis.rs`) or implements [`BasisFamily`] directly. A
+//! family may average its functions over the particles' domains ([`Domain`], `examples/gimp.rs`).
 
 mod bspline;
 mod domain;

@@ -125,8 +125,8 @@ pub fn length<T: Scalar>(vector: &Vector3<T>) -> T {
     vector.norm()
 }
 
-/// An elastic stretch in its principal axes, where a plastic law of logarithmic strains returns it to its yield
-/// surface. Perfect plasticity by von Mises' yield stress, for instance, scales the deviator:
+/// An elastic stretch in its principal axes, where a plastic law of logarithmic strains returns it to its
+/// yield surface. Perfect plasticity by von Mises' yield stress, for instance, scales the deviator:
 ///
 /// ```
 /// use materialpoint::law::{ElasticStretch, Moduli, deviator, length};

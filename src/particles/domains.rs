@@ -5,8 +5,8 @@ use nalgebra::{SMatrix, SVector};
 use crate::parallel::Sliced;
 use crate::scalar::Scalar;
 
-/// Domains of particles, of the kind that the basis asks for ([`Domain`](crate::basis::Domain)); of the other kind
-/// there are none.
+/// Domains of particles, of the kind that the basis asks for ([`Domain`](crate::basis::Domain)); of the other
+/// kind there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Domains<T, const D: usize> {
     /// Half lengths along each axis (m).

@@ -386,8 +386,8 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     }
 
     #[doc(hidden)]
-    /// [`Reconstruction::integrate_batch`] in one cell that is given by its number, point by point; returns whether it was fitted with
-    /// the full set of functions.
+    /// [`Reconstruction::integrate_batch`] in one cell that is given by its number, point by point; returns
+    /// whether it was fitted with the full set of functions.
     fn integrate_single<Q: Field<T>>(
         &self,
         _cloud: &Cloud<'_, T, D>,

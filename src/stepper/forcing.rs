@@ -229,9 +229,8 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
 ///
 /// The surface lies `reach` of the particle's current length `volume / area` beyond its position, but within
 /// the particle's cell: beyond it no mass would feel a load. Where the basis asks for domains
-/// ([`Domain`](crate::basis::Domain)) the particle's length is that of its domain, which mass of the next cell
-/// feels too, so loads act where that ends. In one dimension it also cuts the cell that a
-/// fit covers.
+/// ([`Domain`](crate::basis::Domain)) the particle's length is that of its domain, which mass of the next
+/// cell feels too, so loads act where that ends. In one dimension it also cuts the cell that a fit covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint<T> {
     /// Index of the particle.

@@ -159,9 +159,9 @@ where
     ///
     /// # Errors
     /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside
-    /// the grid or larger than the basis allows ([`Domain`](crate::basis::Domain)), a constant of the phase makes no sense, or beyond one axis the reconstruction is of one
-    /// phase only or wants a basis that is one polynomial of its degree in each cell
-    /// ([`Reconstruction::PARTICLE_MATRIX`]).
+    /// the grid or larger than the basis allows ([`Domain`](crate::basis::Domain)), a constant of the phase
+    /// makes no sense, or beyond one axis the reconstruction is of one phase only or wants a basis that is
+    /// one polynomial of its degree in each cell ([`Reconstruction::PARTICLE_MATRIX`]).
     pub fn new(setup: Setup<T, D, B, R, L, P, X>) -> Result<Self, SetupError> {
         const {
             crate::basis::constants_agree::<T, D, B>();

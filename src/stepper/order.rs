@@ -65,9 +65,9 @@ impl Order {
         !self.numbers.is_empty() && self.crossings * CHANGED >= self.numbers.len()
     }
 
-    /// Puts the particles, with what a transfer remembers of them, in the order of their cells; those of a cell
-    /// stay in the order in which they are, and their states take so many numbers each. Returns whether any has moved; if so, `moves` was told the
-    /// place that each is at now.
+    /// Puts the particles, with what a transfer remembers of them, in the order of their cells; those of a
+    /// cell stay in the order in which they are, and their states take so many numbers each. Returns whether
+    /// any has moved; if so, `moves` was told the place that each is at now.
     #[inline(never)]
     pub(super) fn restore<T: Scalar, const D: usize, S: Copy, P: Copy, M>(
         &mut self,

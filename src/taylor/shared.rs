@@ -128,9 +128,9 @@ impl<V: Copy, const NB: usize> SharedFactor<V, NB> {
         unrolled::<NB>(
             #[inline(always)]
             |m| {
-                // The `m`-th entry on the diagonal of the inverse of the Gram matrix: one over the square that
-                // all other functions leave of the `m`-th. In no order is less left of it, so that a function
-                // that passes by this is kept by every fit.
+                // The `m`-th entry on the diagonal of the inverse of the Gram matrix: one over the square
+                // that all other functions leave of the `m`-th. In no order is less left of it, so that a
+                // function that passes by this is kept by every fit.
                 let mut diagonal = inverse[m][m];
                 unrolled::<NB>(
                     #[inline(always)]
@@ -329,7 +329,8 @@ pub(crate) fn kept_products<T: Scalar, K: Packs<T>, const NB: usize>(
     Some(gram)
 }
 
-/// What is kept first where the rest are products: one tells that they are a factor, zero that there are none.
+/// What is kept first where the rest are products: one tells that they are a factor, zero that there are
+/// none.
 const PRODUCTS: f64 = 2.0;
 
 /// Where row `m` of what is kept begins.

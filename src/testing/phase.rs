@@ -30,10 +30,10 @@ const ANGLE: f64 = 0.5;
 /// increment on rotated stress gives the rotated stress, and a spin none (phases are isotropic).
 ///
 /// Of one that `FLOWS` also: a porosity between 0 and 1; `liquid` gives what `set_liquid` took;
-/// `accelerate_liquid` adds to the velocity alone, which strain leaves as it is; mass and drag of the
-/// liquid are proportional to the volume and not negative; `update` takes the volumes of both by the porosity;
-/// `liquid_stiffness` is pressure over change of volume; the energy of the liquid is the work of its pressure,
-/// and what the liquid adds to the stress does the same work.
+/// `accelerate_liquid` adds to the velocity alone, which strain leaves as it is; mass and drag of the liquid
+/// are proportional to the volume and not negative; `update` takes the volumes of both by the porosity;
+/// `liquid_stiffness` is pressure over change of volume; the energy of the liquid is the work of its
+/// pressure, and what the liquid adds to the stress does the same work.
 ///
 /// Of one that `DIFFUSES` also, with values from one below that of no data to one above: a capacity that is
 /// positive and proportional to mass and volume; `add_to_value` adds to the value, what was taken in over the

@@ -1,7 +1,7 @@
 //! Sums of four cells that follow each other along axis 0.
 //!
-//! They share DOFs: added up, row by row, before they are handed over, each DOF is read and written once, and no cell
-//! waits for the one before.
+//! They share DOFs: added up, row by row, before they are handed over, each DOF is read and written once, and
+//! no cell waits for the one before.
 
 use super::Sweep;
 use super::pairs::{PairSums, pair};

@@ -18,8 +18,8 @@
 //! Functions are products along the axes, so sums run along axis 0 first, for each *row* of a cell's DOFs,
 //! and then over the rows (`rows`). What a group adds to DOFs stays in lanes while particles of its cell
 //! come, and longer where the next cell is the neighbour along axis 0 (`sums`). A basis that is no product is
-//! asked for its functions point by point, with a single number in the place of a pack. Where it averages them
-//! over the domains of particles ([`Domain`]), it is given these too.
+//! asked for its functions point by point, with a single number in the place of a pack. Where it averages
+//! them over the domains of particles ([`Domain`]), it is given these too.
 //!
 //! A group that is not full repeats its last particle without mass and volume. Groups depend on the
 //! particles' order and on where spans begin, not on threads.

@@ -9,8 +9,8 @@
 //! sum_g w_g N_i(x_g) psi_k(x_g) = prod_a A_a[i_a][k_a]
 //! ```
 //!
-//! and for a gradient the slopes along its axis. Coefficients are summed along one axis after another; nothing
-//! is evaluated at points.
+//! and for a gradient the slopes along its axis. Coefficients are summed along one axis after another;
+//! nothing is evaluated at points.
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,5 @@
-//! The crate's own families, reconstructions, laws, phases and transfers under the checks of `materialpoint::testing`,
-//! and mistakes that the checks must find.
+//! The crate's own families, reconstructions, laws, phases and transfers under the checks of
+//! `materialpoint::testing`, and mistakes that the checks must find.
 
 mod basis;
 mod law;

@@ -145,8 +145,8 @@ impl<T: Scalar, const D: usize> WallDofs<T, D> {
                 .eq(self.faces.iter().copied())
     }
 
-    /// Takes in which faces rub of a lattice of DOFs of this `shape`. DOFs at most `reach` apart along each axis
-    /// are neighbours.
+    /// Takes in which faces rub of a lattice of DOFs of this `shape`. DOFs at most `reach` apart along each
+    /// axis are neighbours.
     pub(super) fn lay(
         &mut self,
         shape: [usize; D],

@@ -13,8 +13,8 @@ use crate::testing::worst::Worst;
 
 /// Sizes along the axes as shares of the greatest, each domain in turn with another one along an axis.
 const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
-/// Greatest reach of edge vectors to each side, in cells: less than a half, so that no two corners of a domain
-/// are on edges at once, where slopes jump.
+/// Greatest reach of edge vectors to each side, in cells: less than a half, so that no two corners of a
+/// domain are on edges at once, where slopes jump.
 const REACH: f64 = 0.45;
 /// Share to which a domain shrinks that is to be almost a point.
 const SMALL: f64 = 1.0 / 1024.0;
