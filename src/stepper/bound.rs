@@ -55,7 +55,12 @@ where
     /// Proved for plain MPM ([`Shepard`](crate::reconstruction::Shepard)) with every basis of values that are
     /// not negative, on every layout: `docs/verification/stability.md` has the proof. Of other
     /// reconstructions it bounds nothing: [`Stepper::stiffness`].
+    ///
+    /// Infinite for a transfer from the grid ([`Transfer::FROM_GRID`]), for which it is not proved.
     pub fn stiffness_bound(&mut self, forcing: &Forcing<T, D>) -> T {
+        if const { X::FROM_GRID } {
+            return T::lit(f64::INFINITY);
+        }
         self.prepare();
         // With a liquid that flows of unit density, since its balances differ.
         let weights = match P::FLOWS {
@@ -85,7 +90,12 @@ where
     /// `dt = h / (c + |v|)`. With a liquid that flows also what its drag allows, and in a phase that diffuses
     /// no more than `2 / (D stiffness)`, `D` the diffusivity: `h^2 / (2 D)`. `None` if there is no wave, and
     /// nothing diffuses.
+    ///
+    /// `None` too for a transfer from the grid, as [`Stepper::critical_step`].
     pub fn largest_step(&self, stiffness: T) -> Option<CriticalStep<T>> {
+        if const { X::FROM_GRID } {
+            return None;
+        }
         let wave = self
             .waves()
             .largest_step(self.grid.inverse_cell_size(), stiffness);

@@ -74,6 +74,9 @@ where
     ///
     /// In a phase that diffuses no more than twice one over the proved bound of its largest eigenvalue
     /// (`docs/theory/diffusion.md`).
+    ///
+    /// `None` too for a transfer from the grid ([`Transfer::FROM_GRID`]): what particles keep of a velocity
+    /// decides there, and no bound of it is known here.
     pub fn critical_step(&self, forcing: &Forcing<T, D>) -> Option<CriticalStep<T>> {
         self.clone().into_critical_step(forcing)
     }
@@ -82,6 +85,9 @@ where
     // Out of line, as all that is asked once in a run: a stepper is compiled for every method.
     #[inline(never)]
     pub fn into_critical_step(mut self, forcing: &Forcing<T, D>) -> Option<CriticalStep<T>> {
+        if const { X::FROM_GRID } {
+            return None;
+        }
         if P::FLOWS {
             let geometry = self.eigenvalue_of_unit_density(forcing)?;
             return self.waves().critical_step_of_both(geometry);
@@ -108,7 +114,12 @@ where
     ///
     /// Fits and consistent masses have no bound that is of use: a cell of which particles fill a part may be
     /// a hundred times as stiff as a full one, or a mass matrix next to singular.
+    ///
+    /// `None` too for a transfer from the grid, as [`Stepper::critical_step`].
     pub fn stiffness(&mut self, forcing: &Forcing<T, D>) -> Option<T> {
+        if const { X::FROM_GRID } {
+            return None;
+        }
         if R::PLAIN {
             return Some(self.stiffness_bound(forcing));
         }

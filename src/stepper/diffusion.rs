@@ -112,18 +112,19 @@ fn ratio<T: Scalar>(amount: T, capacity: T) -> T {
     }
 }
 
-/// Refuses a particle that takes in nothing, or whose value is no number.
+/// Refuses a particle that takes in nothing, or whose value is no number; `number` names one at its place.
 pub(super) fn refuse_without_capacity<T: Scalar, const D: usize, S, P: Phase<T, D>>(
     phase: &P,
     particles: &Particles<T, D, S, P::Particle>,
+    number: impl Fn(usize) -> usize,
 ) -> Result<(), SetupError> {
     if const { !P::DIFFUSES } {
         return Ok(());
     }
     let bodies = particles.mass.iter().zip(&particles.volume).zip(&particles.phase);
-    for (particle, ((&mass, &volume), data)) in bodies.enumerate() {
+    for (place, ((&mass, &volume), data)) in bodies.enumerate() {
         let refuse = |name, value: T, allowed| SetupError::Value {
-            particle,
+            particle: number(place),
             name,
             value: value.primal(),
             allowed,

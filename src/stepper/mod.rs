@@ -182,7 +182,7 @@ where
             surface,
         } = setup;
         check_material(&law, &phase, &particles)?;
-        diffusion::refuse_without_capacity(&phase, &particles)?;
+        diffusion::refuse_without_capacity(&phase, &particles, |p| p)?;
         domain::lay::<T, D, B, _, _>(&grid, &mut particles);
         domain::validate::<T, D, B, _, _>(&grid, &particles, |p| p)?;
         if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {

@@ -1,5 +1,6 @@
 //! The parts of a stepper, handed out between steps and back at the end.
 
+use super::diffusion::refuse_without_capacity;
 use super::order::permute;
 use super::{Setup, Stepper, domain, refuse_unknown_stress, values};
 use crate::basis::BasisFamily;
@@ -47,7 +48,8 @@ where
     }
 
     /// Lets `edit` write particle data between two steps, in the order of [`Stepper::particles`]: velocities
-    /// that a controller sets, a wall that heats. Their number stays. Costs a copy of the particles.
+    /// that a controller sets, a wall that heats. Their number stays, and so does what the transfer remembers of
+    /// them ([`Stepper::edit_memory`]). Costs a copy of the particles.
     ///
     /// # Errors
     /// As those of [`Stepper::new`] for particles; they are then as they were.
@@ -64,6 +66,12 @@ where
         taken_in
     }
 
+    /// Lets `edit` write what the transfer remembers of each of [`Stepper::particles`]: to be forgotten where
+    /// velocities were written that it does not belong to.
+    pub fn edit_memory(&mut self, edit: impl FnOnce(&mut [X::Particle])) {
+        edit(&mut self.memory);
+    }
+
     fn take_in_edited(&mut self) -> Result<(), SetupError> {
         let (found, expected) = (self.particles.len(), self.bins.len());
         if found != expected {
@@ -76,6 +84,7 @@ where
         }
         self.particles.validate_with(self.law.numbers())?;
         refuse_unknown_stress(&self.law, &self.particles)?;
+        refuse_without_capacity(&self.phase, &self.particles, |place| self.order.number(place))?;
         domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, |place| self.order.number(place))?;
         let positions = &self.particles.position;
         self.bins =

@@ -212,7 +212,7 @@ where
     }
 
     fn stiffness_is_bound(&self) -> bool {
-        R::PLAIN
+        R::PLAIN && !X::FROM_GRID
     }
 
     fn largest_step(&self, stiffness: f64) -> Option<CriticalStep<f64>> {

@@ -4,8 +4,8 @@ use std::any::type_name;
 
 use materialpoint::basis::{BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid, Side};
-use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::particles::Particles;
+use materialpoint::law::{LinearElastic, Moduli, NeoHookean};
+use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{OnePhase, TwoPhase};
 use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor, Shepard, Taylor};
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
@@ -347,4 +347,26 @@ fn bytes_count_domains() {
         all.bytes()
     };
     assert_eq!(bytes(true) - bytes(false), 16 * particles::<2>(8, 2).1.len());
+}
+
+/// A stencil begins a node before its cell, and that may lie before the window of a body that is small in its
+/// grid, with more particles than one span holds: a plate in uniform flight keeps its velocity.
+#[test]
+fn a_window_may_begin_within_a_stencil() {
+    let grid = Grid::new(vector![0.0, 0.0], vector![200.0, 200.0], [200, 200]).unwrap();
+    let points = lattice(&grid, &vector![60.0, 60.0], &vector![96.0, 96.0], [2, 2]);
+    assert!(points.len() > 4096);
+    let mut particles = Particles::at_rest(&points, 1.0);
+    particles.velocity.fill(vector![-3.0, -2.0]);
+    let law = NeoHookean {
+        moduli: Moduli::from_young(10.0, 0.3).unwrap(),
+    };
+    let setup = Setup::new(grid, Gimp, Shepard, law, OnePhase, particles);
+    let mut stepper = Stepper::new(setup).unwrap();
+    for _ in 0..60 {
+        stepper.step(0.05, &Forcing::none()).unwrap();
+    }
+    for v in &stepper.particles().velocity {
+        assert!((v - vector![-3.0, -2.0]).norm() < 1e-12, "{v}");
+    }
 }

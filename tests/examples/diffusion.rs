@@ -460,6 +460,14 @@ fn what_heat_does_not_know_is_refused() {
         bar(f64::INFINITY).err(),
         Some(SetupError::Value { particle: 0, .. })
     ));
+    // The same between two steps, and nothing has changed then.
+    let mut edited = bar(1.0).unwrap();
+    let outcome = edited.edit_particles(|particles| particles.phase[3].0 = f64::NAN);
+    assert!(
+        matches!(outcome, Err(SetupError::Value { particle: 3, .. })),
+        "{outcome:?}"
+    );
+    edited.step(1e-12, &Forcing::none()).unwrap();
     // A step far beyond the stable one ends with the particle whose temperature is no number any more.
     let mut bar = body(
         (Linear, Shepard),

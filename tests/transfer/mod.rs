@@ -337,3 +337,34 @@ impl Transfer<f64, 2> for Probe {
         *both = (seen.affine(), seen.gradient);
     }
 }
+
+/// What bounds a step of FLIP does not bound one of these: PIC with hats and one particle a cell grows from
+/// 0.71 of it on. Nothing is said rather than something wrong.
+#[test]
+fn no_step_is_said_to_be_stable() {
+    let (mut stepper, _) = block(BSpline::<2>, Pic, SMatrix::<f64, 2, 2>::zeros());
+    let forcing = Forcing::none();
+    assert!(stepper.critical_step(&forcing).is_none());
+    assert!(stepper.stiffness(&forcing).is_none() && stepper.largest_step(1.0).is_none());
+    assert!(stepper.stiffness_bound(&forcing).is_infinite() && !stepper.stiffness_is_bound());
+    let (mut flip, _) = block(BSpline::<2>, Flip, SMatrix::<f64, 2, 2>::zeros());
+    assert!(flip.critical_step(&forcing).is_some() && flip.stiffness(&forcing).is_some());
+}
+
+/// Velocities that are written hold if what was remembered of others is written too.
+#[test]
+fn what_is_remembered_can_be_written() {
+    let speed = |forget: bool| {
+        let mut stepper = disc(BSpline::<2>, 1);
+        (0..5).for_each(|_| stepper.step(0.02, &Forcing::none()).unwrap());
+        let stop = |particles: &mut Particles<f64, 2, _>| particles.velocity.fill(vector![0.0, 0.0]);
+        stepper.edit_particles(stop).unwrap();
+        if forget {
+            stepper.edit_memory(|memory| memory.fill(Affine::default()));
+        }
+        stepper.step(1e-9, &Forcing::none()).unwrap();
+        let speeds = stepper.particles().velocity.iter().map(|v| v.norm());
+        speeds.fold(0.0, f64::max)
+    };
+    assert!(speed(true) < 1e-6 && speed(false) > 1e-3);
+}

@@ -27,6 +27,7 @@ use std::io::{self, Read, Write};
 use nalgebra::SVector;
 
 use super::balance::Balance;
+use super::diffusion::refuse_without_capacity;
 use super::{Conservation, Diagnostics, Stepper, SurfacePoint, domain};
 use crate::basis::BasisFamily;
 use crate::error::RestoreError;
@@ -95,6 +96,7 @@ where
         self.balance.restore(&mut from)?;
         self.particles.restore(&mut from, self.law.numbers())?;
         from.records("what the transfer remembers of particle", &mut self.memory)?;
+        refuse_without_capacity(&self.phase, &self.particles, |place| place)?;
         domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, |place| place)?;
         restore_surface(&mut self.surface, &mut from, self.particles.len())?;
         restore_cells(&mut self.bins, &mut from, &self.grid, self.strayed)?;
