@@ -170,7 +170,50 @@ mod tests {
         points.map(|x| (field(x) - f(x)).abs()).fold(0.0, f64::max)
     }
 
-    /// Few cells too, where the knots of both ends meet.
+    /// Few cells too, where the knots of both ends meet. Places of DOFs: Greville abscissae of open knots,
+    /// nodes of hats, and none where a linear function is not reproduced.
+    #[test]
+    fn dofs_lie_where_linear_functions_are_reproduced_about() {
+        let grid = Grid::new(vector![1.0], vector![3.0], [4]).unwrap();
+        let near = |found: Option<Vec<f64>>, expected: &[f64]| {
+            let found = found.unwrap();
+            assert_eq!(found.len(), expected.len());
+            for (a, b) in found.iter().zip(expected) {
+                assert!((a - b).abs() < 1e-14, "{found:?}");
+            }
+        };
+        let nodes = [1.0, 1.5, 2.0, 2.5, 3.0];
+        near(places_along(&Linear, &grid, 0), &nodes);
+        near(places_along(&DualDomain::new(), &grid, 0), &nodes);
+        let greville = [1.0, 1.25, 1.75, 2.25, 2.75, 3.0];
+        near(places_along(&BSpline::<2>, &grid, 0), &greville);
+        assert!(places_along(&Steps, &grid, 0).is_none());
+    }
+
+    /// One constant function a cell.
+    #[derive(Clone, Debug)]
+    struct Steps;
+
+    impl BasisFamily<f64, 1> for Steps {
+        fn degree(&self) -> usize {
+            0
+        }
+
+        fn dofs(&self, grid: &Grid<f64, 1>) -> [usize; 1] {
+            grid.cells()
+        }
+
+        fn for_each(
+            &self,
+            _grid: &Grid<f64, 1>,
+            cell: &Cell<1>,
+            _x: &SVector<f64, 1>,
+            mut f: impl FnMut(usize, f64, SVector<f64, 1>),
+        ) {
+            f(cell[0] as usize, 1.0, SVector::zeros());
+        }
+    }
+
     #[test]
     fn ones_and_every_polynomial_of_the_degree_are_kept() {
         for cells in [1, 2, 3, 10] {

@@ -360,8 +360,8 @@ pub(crate) fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
 }
 
 /// Place of a DOF among those of the window along an axis. On a grid with fewer DOFs than a cell has
-/// functions those left over repeat the last one, with nothing; so does the first one for functions that begin
-/// before the window, which have nothing where particles are.
+/// functions those left over repeat the last one, with nothing; so does the first one for functions that
+/// begin before the window, which have nothing where particles are.
 #[inline(always)]
 fn along<const D: usize>((first, shape): &(Cell<D>, [usize; D]), axis: usize, dof: usize) -> usize {
     dof.saturating_sub(first[axis] as usize).min(shape[axis] - 1)

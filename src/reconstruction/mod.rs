@@ -125,8 +125,8 @@ pub(crate) fn batch_of_cells<T: Scalar, const D: usize>(
     )
 }
 
-#[doc(hidden)]
 /// What became of four cells that were streamed at once.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BatchStatus {
     /// Whether a cell could not be.
@@ -135,8 +135,8 @@ pub struct BatchStatus {
     pub reduced: usize,
 }
 
-#[doc(hidden)]
 /// What is kept of four cells from the first fit of a step to the second.
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct Kept<'a, T> {
     /// As many numbers as [`Reconstruction::KEPT`], or none: nothing can be kept then.
@@ -254,23 +254,23 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     /// Whether [`Reconstruction::relax`] does anything.
     const RELAXES: bool = false;
 
-    #[doc(hidden)]
     /// Whether four cells can be streamed at once without [`Reconstruction::prepare`]
     /// ([`Reconstruction::integrate_batch`]).
+    #[doc(hidden)]
     const BATCHED: bool = false;
 
-    #[doc(hidden)]
     /// Numbers of each of four cells that [`Reconstruction::integrate_batch`] keeps where it does not
     /// conserve, and takes up again where it does.
+    #[doc(hidden)]
     const KEPT: usize = 0;
 
     /// Whether [`Reconstruction::fit_batch`] hands over coefficients of Taylor functions.
     #[doc(hidden)]
     const FITS_TAYLOR: bool = false;
 
-    #[doc(hidden)]
     /// Whether [`Reconstruction::integrate_batch`] wants what [`Reconstruction::prepare`] and
     /// [`Reconstruction::fit_field`] took in.
+    #[doc(hidden)]
     const NON_LOCAL: bool = false;
 
     /// Takes in the geometry. Every field streamed until the next call shares it.
@@ -294,13 +294,13 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         sink: impl FnMut(&Point<T, D>, Q),
     );
 
-    #[doc(hidden)]
     /// A liquid flows: its pressure will be reconstructed with the stress.
+    #[doc(hidden)]
     fn configure_for_saturated(&mut self) {}
 
-    #[doc(hidden)]
     /// Takes in the field that [`Reconstruction::integrate_cells`] or [`Reconstruction::integrate_batch`]
     /// will stream next, where a cell's fit wants the values of its neighbours.
+    #[doc(hidden)]
     fn fit_field<Q: Field<T>>(&mut self, _cloud: &Cloud<'_, T, D>, _value: &(impl Values<T, Q> + Sync)) {
         const { assert!(!Self::NON_LOCAL, "NON_LOCAL wants an own `fit_field`") };
     }
@@ -334,21 +334,21 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         };
     }
 
-    #[doc(hidden)]
     /// Coordinates in a cell, each in `[-1, 1]`, of the points along an axis whose products
     /// [`Reconstruction::integrate_batch`] streams, axis 0 fastest; none if it cannot as it is set up.
+    #[doc(hidden)]
     fn line(&self) -> impl Iterator<Item = T> {
         const { assert!(!Self::BATCHED, "BATCHED wants an own `line`") };
         std::iter::empty()
     }
 
-    #[doc(hidden)]
     /// What [`Reconstruction::integrate_conserved`] streams, if `conserve`, or else
     /// [`Reconstruction::integrate`], in up to four `cells`, places in the list of occupied ones from a
     /// multiple of four on: one cell in each lane, the number of the point and the components of the value.
     /// `value` is that of a particle: in the first case its density. Only asked where
     /// [`Reconstruction::BATCHED`]; returns in which cells it failed (those that a surface cuts always), so
     /// that they must be streamed by [`Reconstruction::integrate_single`].
+    #[doc(hidden)]
     fn integrate_batch<K: Packs<T>, Q: Field<T>>(
         &self,
         _k: K,
@@ -385,9 +385,9 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         std::iter::empty()
     }
 
-    #[doc(hidden)]
     /// [`Reconstruction::integrate_batch`] in one cell that is given by its number, point by point; returns
     /// whether it was fitted with the full set of functions.
+    #[doc(hidden)]
     fn integrate_single<Q: Field<T>>(
         &self,
         _cloud: &Cloud<'_, T, D>,
@@ -448,9 +448,9 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
         0
     }
 
-    #[doc(hidden)]
     /// Whether cells may borrow virtual points, where the reconstruction knows any
     /// ([`Taylor::with_virtual_points`]).
+    #[doc(hidden)]
     fn lend_virtual_points(&mut self, _lent: bool) {}
 
     /// Bytes allocated, for the user's information.

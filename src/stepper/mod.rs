@@ -15,6 +15,9 @@
 //! 6. `drift`: G2P of position, displacement, $\Delta\varepsilon = \Delta t\sum_i v_i\otimes\nabla\phi_i$,
 //!    stress by the law, volume by $\det(1+\Delta\varepsilon)$ at large strain.
 //!
+//! A transfer from the grid ([`crate::transfer`]) takes other ways in 3 and 4: momenta to the DOFs, the kick
+//! there, velocities back to the particles (`from_grid`).
+//!
 //! With a liquid that flows through the pores the same stages take both phases together (`liquid` has the
 //! second balance).
 //!

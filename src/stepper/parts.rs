@@ -48,8 +48,8 @@ where
     }
 
     /// Lets `edit` write particle data between two steps, in the order of [`Stepper::particles`]: velocities
-    /// that a controller sets, a wall that heats. Their number stays, and so does what the transfer remembers of
-    /// them ([`Stepper::edit_memory`]). Costs a copy of the particles.
+    /// that a controller sets, a wall that heats. Their number stays, and so does what the transfer remembers
+    /// of them ([`Stepper::edit_memory`]). Costs a copy of the particles.
     ///
     /// # Errors
     /// As those of [`Stepper::new`] for particles; they are then as they were.

@@ -1,5 +1,5 @@
-//! What each stage of a step is for the types of a stepper: the one place where these are asked. The list is
-//! in `step`.
+//! What each stage of a step is for the types of a stepper, but where the file of the stage itself asks them
+//! (`diffusion`, `contact`). The list is in `step`.
 
 use super::acceleration::{Walls, accelerate};
 use super::dofs::MassModel;

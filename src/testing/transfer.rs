@@ -40,9 +40,12 @@ where
     if !X::FROM_GRID {
         return Ok(());
     }
-    let Some(world) = World::new() else {
-        return Ok(());
-    };
+    let world = World::new().ok_or(Failure {
+        property: Property::PointsInGrid,
+        place: Place::Everywhere,
+        expected: super::Expected::AtLeast(1.0),
+        found: 0.0,
+    })?;
     keeps_uniform(transfer, &world)?;
     keeps_momentum(transfer, &world)?;
     linear(transfer, &world, claims.keeps_linear_velocities)
@@ -64,7 +67,8 @@ impl<T: Scalar, const D: usize> World<T, D>
 where
     BSpline<2>: BasisFamily<T, D>,
 {
-    /// `None` never: the grid is one, and the particles are in it.
+    /// `None` if the scalar cannot tell the particles' cells or the places of the DOFs: then nothing is
+    /// checked.
     fn new() -> Option<Self> {
         let size = T::count(CELLS);
         let grid = Grid::new(SVector::zeros(), SVector::repeat(size), [CELLS; D]).ok()?;
