@@ -53,10 +53,12 @@ impl<T: Scalar, const N: usize> Interpolant<T, N> {
     }
 }
 
-/// Where the DOFs of the whole grid lie along `axis` (m): the places `x_i` with `sum_i phi_i x_i = x`. Nodes
-/// of hats, Greville abscissae of splines, and for functions of another kind what they say themselves. `None`
-/// if there are none: then the functions do not reproduce linear ones, or are no products along the axes.
-pub(crate) fn places_along<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+/// Where the DOFs of the whole grid lie along `axis`: DOF `i` at `x_i = x_min + (i + s_i) h`, with the shifts
+/// `s_i` that are returned and for which `sum_i phi_i x_i = x`. Nodes of hats (no shift), Greville abscissae of
+/// splines, and for functions of another kind what they say themselves. Shifts, unlike places, do not grow
+/// with the grid and lose no digit in single precision. `None` if there are none: then the functions do not
+/// reproduce linear ones, or are no products along the axes.
+pub(crate) fn shifts_along<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
     axis: usize,
@@ -65,29 +67,50 @@ pub(crate) fn places_along<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     let shape = basis.dofs(grid);
     let stride: usize = shape[..axis].iter().product();
     let middle: Cell<D> = std::array::from_fn(|a| grid.cells()[a] as u32 / 2);
-    // Along a line through the grid's middle the functions of the other axes add up to one.
+    // Along a line through the grid's middle the functions of the other axes add up to one. The place is
+    // handed on as a coordinate in its cell, and that cell.
     let values = |along: T, f: &mut dyn FnMut(usize, T)| {
         let mut x = grid.centre(&middle);
         x[axis] = along;
-        if let Some(cell) = grid.locate(&x) {
-            basis.for_each(grid, &cell, &x, |dof, phi, _| f(dof / stride % shape[axis], phi));
-        }
+        let cell = grid.locate(&x)?;
+        basis.for_each(grid, &cell, &x, |dof, phi, _| f(dof / stride % shape[axis], phi));
+        let unit = grid.unit_coordinate(axis, cell[axis], along);
+        Some((cell[axis] as usize, unit))
     };
+    // What the numbers of the DOFs leave of a place: `xi - sum_i phi_i (i - cell)`.
+    let left = |(cell, unit): (usize, T), functions: &[(usize, T)]| {
+        let parts = functions.iter().map(|&(j, phi)| phi * steps_from::<T>(cell, j));
+        parts.fold(unit, |left, part| left - part)
+    };
+    let mut functions = Vec::new();
     let mut system = Collocation::<T, 1>::new(shape[axis], basis.reach().min(shape[axis] - 1));
     for n in 0..shape[axis] {
         let x = basis.interpolation_point(grid, n * stride)[axis];
-        system.right.push(SVector::repeat(x));
-        values(x, &mut |j, phi| system.add(n, j, phi));
+        functions.clear();
+        let place = values(x, &mut |j, phi| functions.push((j, phi)))?;
+        system.right.push(SVector::repeat(left(place, &functions)));
+        for &(j, phi) in &functions {
+            system.add(n, j, phi);
+        }
     }
-    let places: Vec<T> = system.solve().iter().map(|x| x[0]).collect();
-    let size = grid.cell_size()[axis];
-    let reproduces = |cell: usize| {
-        let x = grid.edge(axis, cell) + size * T::lit(0.3);
-        let mut sum = T::zero();
-        values(x, &mut |j, phi| sum += places[j] * phi);
-        (sum - x).abs() <= T::default_epsilon().sqrt() * size
+    let shifts: Vec<T> = system.solve().iter().map(|s| s[0]).collect();
+    let mut reproduces = |cell: usize| {
+        let x = grid.edge(axis, cell) + grid.cell_size()[axis] * T::lit(0.3);
+        functions.clear();
+        let Some(place) = values(x, &mut |j, phi| functions.push((j, phi))) else {
+            return false;
+        };
+        let parts = functions.iter().map(|&(j, phi)| phi * shifts[j]);
+        let error = parts.fold(left(place, &functions), |left, part| left - part);
+        error.abs() <= T::default_epsilon().sqrt()
     };
-    (0..grid.cells()[axis]).all(reproduces).then_some(places)
+    (0..grid.cells()[axis]).all(&mut reproduces).then_some(shifts)
+}
+
+/// How many cells further than `cell` the number of a DOF says that it is.
+#[inline(always)]
+pub(crate) fn steps_from<T: Scalar>(cell: usize, dof: usize) -> T {
+    T::lit(f64::from(dof as i32 - cell as i32))
 }
 
 /// A banded system of equations, one for each interpolation point. Its matrix is totally positive, or a
@@ -170,24 +193,43 @@ mod tests {
         points.map(|x| (field(x) - f(x)).abs()).fold(0.0, f64::max)
     }
 
-    /// Few cells too, where the knots of both ends meet. Places of DOFs: Greville abscissae of open knots,
-    /// nodes of hats, and none where a linear function is not reproduced.
+    /// Places of DOFs: Greville abscissae of open knots, nodes of hats, and none where a linear function is not
+    /// reproduced.
     #[test]
     fn dofs_lie_where_linear_functions_are_reproduced_about() {
         let grid = Grid::new(vector![1.0], vector![3.0], [4]).unwrap();
         let near = |found: Option<Vec<f64>>, expected: &[f64]| {
             let found = found.unwrap();
             assert_eq!(found.len(), expected.len());
-            for (a, b) in found.iter().zip(expected) {
-                assert!((a - b).abs() < 1e-14, "{found:?}");
+            for (i, (shift, place)) in found.iter().zip(expected).enumerate() {
+                let found = 1.0 + 0.5 * (i as f64 + shift);
+                assert!((found - place).abs() < 1e-14, "DOF {i}: {found} for {place}");
             }
         };
         let nodes = [1.0, 1.5, 2.0, 2.5, 3.0];
-        near(places_along(&Linear, &grid, 0), &nodes);
-        near(places_along(&DualDomain::new(), &grid, 0), &nodes);
+        near(shifts_along(&Linear, &grid, 0), &nodes);
+        near(shifts_along(&DualDomain::new(), &grid, 0), &nodes);
         let greville = [1.0, 1.25, 1.75, 2.25, 2.75, 3.0];
-        near(places_along(&BSpline::<2>, &grid, 0), &greville);
-        assert!(places_along(&Steps, &grid, 0).is_none());
+        near(shifts_along(&BSpline::<2>, &grid, 0), &greville);
+        assert!(shifts_along(&Steps, &grid, 0).is_none());
+    }
+
+    /// Far from the origin and on many cells a shift is as exact as near it: places in single precision would
+    /// be off by a part of a cell here.
+    #[test]
+    fn places_of_dofs_lose_no_digit_far_from_the_origin() {
+        for (min, cells) in [(0.0, 4_usize), (4096.0, 4), (-100.0, 50_000)] {
+            let grid = Grid::<f32, 1>::new(vector![min], vector![min + cells as f32 * 0.5], [cells]).unwrap();
+            let shifts = shifts_along(&BSpline::<2>, &grid, 0).unwrap();
+            for (i, shift) in shifts.iter().enumerate() {
+                let expected = match i {
+                    0 => 0.0,
+                    _ if i == cells + 1 => -1.0,
+                    _ => -0.5,
+                };
+                assert!((shift - expected).abs() < 1e-6, "{cells} cells from {min}, DOF {i}: {shift}");
+            }
+        }
     }
 
     /// One constant function a cell.

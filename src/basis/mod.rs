@@ -15,7 +15,7 @@ pub use bspline::BSpline;
 pub use domain::Domain;
 pub use dual_domain::DualDomain;
 pub use interpolant::Interpolant;
-pub(crate) use interpolant::places_along;
+pub(crate) use interpolant::{shifts_along, steps_from};
 pub use linear::Linear;
 pub(crate) use tensor::MOST_WIDTH;
 pub use tensor::{AxisBasis, AxisCell, Factors, Functions};

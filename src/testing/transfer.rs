@@ -111,7 +111,7 @@ where
                 false => SMatrix::zeros(),
             };
             self.each_dof(p, |i, phi, _| {
-                let offset = self.places.offset(i, &self.positions[p]);
+                let offset = self.offset(p, i);
                 masses[i] += phi * self.masses[p];
                 momenta[i] += (velocities[p] + affine * offset) * (phi * self.masses[p]);
             });
@@ -137,11 +137,16 @@ where
         for p in 0..self.positions.len() {
             let mut seen = GridVelocity::none(T::lit(STEP), *self.grid.cell_size());
             self.each_dof(p, |i, phi, gradient| {
-                let offset = self.places.offset(i, &self.positions[p]);
+                let offset = self.offset(p, i);
                 seen.see(phi, &gradient, &offset, (&dofs[i], &kick(i)));
             });
             transfer.take(&seen, &mut velocities[p], &mut memory[p]);
         }
+    }
+
+    /// From a particle to a DOF.
+    fn offset(&self, p: usize, dof: usize) -> SVector<T, D> {
+        self.places.offset(&self.grid, dof, (&self.cells[p], &self.positions[p]))
     }
 
     fn state<X: Transfer<T, D>>(&self, velocity: impl Fn(&SVector<T, D>) -> SVector<T, D>) -> State<T, D, X> {
@@ -262,7 +267,7 @@ where
     let origin = SVector::zeros();
     // The DOFs' own, which any mapping of it would give them.
     let dofs: Vec<_> = (0..count)
-        .map(|i| field(&world.places.offset(i, &origin)))
+        .map(|i| field(&world.places.offset(&world.grid, i, (&[0; D], &origin))))
         .collect();
     world.taken(transfer, &dofs, rest, &mut state);
     for _ in 0..2 {

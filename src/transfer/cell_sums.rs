@@ -61,10 +61,9 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, const S: usize, const 
         }
         let mut k = 0;
         let sums = &mut self.sums;
-        let x = place.1;
         domains.for_each((self.basis, self.grid), p, place, |dof, phi, mut gradient| {
             if let Some(places) = places {
-                gradient = places.offset(dof, x) * phi;
+                gradient = places.offset(self.grid, dof, place) * phi;
             }
             match sums.get_mut(k) {
                 Some(sum) => sum.add(parts, phi, &gradient),

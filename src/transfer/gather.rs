@@ -73,7 +73,7 @@ fn seen_from<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     let x = &sites.positions[p];
     let mut seen = GridVelocity::none(T::zero(), SVector::zeros());
     sites.for_each(basis, grid, p, |i, phi, gradient| {
-        let offset = places.offset(i, x);
+        let offset = places.offset(grid, i, (&sites.cells[p], x));
         seen.see(phi, &gradient, &offset, (&velocities[i], &accelerations[i]));
     });
     Seen {
@@ -145,7 +145,7 @@ where
         let cell = &self.cells[group.first];
         let x = group.vectors::<FULL, T, K, D>(k, self.positions);
         let factors = sweep.factors::<FULL, K, N>(k, group, (cell, &x), self.half_lengths);
-        let moments = sweep.moments(k, cell, &x, &factors, self.places);
+        let moments = sweep.moments(k, (cell, &x), &factors, self.places);
         let first = sweep.first_dof(cell);
         let (velocity, slopes) = sweep.value_and_slopes(k, first, &factors, velocities);
         let inverse = sweep.inverse(k);
@@ -163,7 +163,7 @@ where
             acceleration: sweep.value(k, first, &factors, accelerations),
             gradient,
             moment: sweep.value_and_slopes(k, first, &moments, velocities).1,
-            second_moment: sweep.second_moments(k, cell, &x, &moments, self.places),
+            second_moment: sweep.second_moments(k, (cell, &x), &moments, self.places),
         };
         self.what.take::<K, N, FULL>(k, group, &seen);
     }

@@ -133,7 +133,7 @@ where
         let x = group.vectors::<FULL, T, K, D>(k, self.positions);
         let mut factors = sweep.factors::<FULL, K, N>(k, group, (cell, &x), self.half_lengths);
         if let Some(places) = self.what.places() {
-            factors = sweep.moments(k, cell, &x, &factors, places);
+            factors = sweep.moments(k, (cell, &x), &factors, places);
         }
         let parts = self.what.parts::<K, N, FULL>(k, group, &self.slopes);
         self.sums.add(k, sweep, cell, &factors, &parts, &mut self.sink);

@@ -60,7 +60,7 @@ where
     /// Those of `out`, and [`io::ErrorKind::Unsupported`] for scalars other than `f64` and `f32`.
     pub fn save(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut out = Out::new::<T>(out)?;
-        self.shape().into_iter().try_for_each(|value| out.count(value))?;
+        self.shape().into_iter().try_for_each(|(_, value)| out.count(value))?;
         save_window(&self.grid, &mut out)?;
         out.flag(self.strayed)?;
         out.numbers(&[self.time])?;
@@ -107,10 +107,14 @@ where
         self.spans.restore(&mut from, (&self.grid, &self.bins), most)
     }
 
-    /// What two steppers must have in common.
-    fn shape(&self) -> [usize; 5] {
-        let cells = self.grid.cells().iter().product();
-        [D, size_of::<T>(), cells, self.particles.len(), self.surface.len()]
+    /// What two steppers must have in common, by names.
+    fn shape(&self) -> impl IntoIterator<Item = (&'static str, usize)> + use<T, D, B, R, L, P, X> {
+        let kind = [("axes", D), ("bytes to a number", size_of::<T>())];
+        let cells = self.grid.cells().into_iter().enumerate();
+        let cells = cells.map(|(axis, count)| (CELLS_ALONG.get(axis).copied().unwrap_or("cells"), count));
+        let (particles, surfaces) = (self.particles.len(), self.surface.len());
+        let counts = [("particles", particles), ("surfaces", surfaces)];
+        kind.into_iter().chain(cells).chain(counts)
     }
 
     /// Takes over the window of cells that was read.
@@ -129,12 +133,14 @@ where
     }
 }
 
-/// Names of what two steppers must have in common.
-const SHAPE: [&str; 5] = ["axes", "bytes to a number", "cells", "particles", "surfaces"];
+const CELLS_ALONG: [&str; 3] = ["cells along x", "cells along y", "cells along z"];
 
 #[inline(never)]
-fn restore_shape(from: &mut In<'_>, shape: [usize; 5]) -> Result<(), RestoreError> {
-    for (what, expected) in SHAPE.into_iter().zip(shape) {
+fn restore_shape(
+    from: &mut In<'_>,
+    shape: impl IntoIterator<Item = (&'static str, usize)>,
+) -> Result<(), RestoreError> {
+    for (what, expected) in shape {
         from.expect(what, expected)?;
     }
     Ok(())
@@ -221,8 +227,8 @@ impl<T: Scalar> Diagnostics<T> {
             wall_work,
             wall_gain,
             unsolved_contacts,
-            // Of the setup, as whether a liquid flows.
-            total_mass: _,
+            // Not of the setup alone: particles may have been edited since.
+            total_mass,
         } = self;
         for errors in [Some(conservation), liquid_conservation.as_ref()]
             .into_iter()
@@ -239,7 +245,7 @@ impl<T: Scalar> Diagnostics<T> {
         out.count(*reduced_cells)?;
         out.count(*virtual_cells)?;
         out.count(*unsolved_contacts)?;
-        out.numbers(&[*wall_work, *wall_gain])
+        out.numbers(&[*wall_work, *wall_gain, *total_mass])
     }
 
     fn restore(&mut self, from: &mut In<'_>) -> Result<(), RestoreError> {
@@ -261,6 +267,7 @@ impl<T: Scalar> Diagnostics<T> {
         self.unsolved_contacts = from.count()?;
         from.numbers(std::slice::from_mut(&mut self.wall_work))?;
         from.numbers(std::slice::from_mut(&mut self.wall_gain))?;
+        from.numbers(std::slice::from_mut(&mut self.total_mass))?;
         Ok(())
     }
 }

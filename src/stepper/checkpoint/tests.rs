@@ -204,7 +204,46 @@ fn a_state_that_ends_early_or_is_anothers_is_refused() {
     }
     let error = plane(Shepard).restore(&mut &state[..]).unwrap_err();
     let message = error.to_string();
-    assert_eq!(message, "the state has 144 cells; expected 4096");
+    assert_eq!(message, "the state has 12 cells along x; expected 512");
+}
+
+/// As many cells in all, but along other axes.
+#[test]
+fn a_state_of_a_grid_of_another_shape_is_refused() {
+    let grid = |cells: [usize; 2]| {
+        let max = vector![cells[0] as f64, cells[1] as f64];
+        let law = LinearElastic {
+            moduli: Moduli::from_young(1e-3, 0.3).unwrap(),
+        };
+        let points = [(vector![2.2, 1.7], 0.25), (vector![2.7, 1.7], 0.25)];
+        let particles = Particles::at_rest(&points, 1.0);
+        let grid = Grid::new(vector![0.0, 0.0], max, cells).unwrap();
+        setup(grid, (BSpline::<2>, Shepard, law), particles)
+    };
+    let (wide, mut high) = (grid([12, 4]), grid([4, 12]));
+    let error = high.restore(&mut &saved(&wide)[..]).unwrap_err().to_string();
+    assert_eq!(error, "the state has 12 cells along x; expected 4");
+    grid([12, 4]).restore(&mut &saved(&wide)[..]).unwrap();
+}
+
+/// The mass that errors of conservation are compared with is that of the particles as they were edited.
+#[test]
+fn the_mass_of_edited_particles_is_restored() {
+    let mut stepper = small();
+    stepper
+        .edit_particles(|mut particles| particles.mass_mut().iter_mut().for_each(|m| *m *= 3.0))
+        .unwrap();
+    stepper.step(1.0, &Forcing::none()).unwrap();
+    let mut resumed = small();
+    resumed.restore(&mut &saved(&stepper)[..]).unwrap();
+    let mass = |stepper: &Stepper<f64, 2, _, _, _, _>| stepper.diagnostics().total_mass;
+    assert_eq!(mass(&resumed), mass(&stepper));
+    assert!(mass(&small()) * 2.9 < mass(&resumed));
+    for stepper in [&mut resumed, &mut stepper] {
+        stepper.step(1.0, &Forcing::none()).unwrap();
+        let conservation = &stepper.diagnostics().conservation;
+        assert!(conservation.mass < 1e-12, "{conservation:?}");
+    }
 }
 
 /// Also where a checksum would have told: whatever the bytes are, nothing panics, in restoring or in steps

@@ -13,7 +13,7 @@ use super::CheckpointError;
 /// First bytes of the file. Not text, and changed by whatever changes the ends of lines.
 const MAGIC: [u8; 8] = *b"\x8aMPM\r\n\x1a\n";
 /// Format of all that follows.
-pub(super) const VERSION: u32 = 5;
+pub(super) const VERSION: u32 = 6;
 /// Bytes that are passed on at once, a multiple of the words of the checksum.
 const BLOCK: usize = 1 << 16;
 /// Bytes of the checksum.

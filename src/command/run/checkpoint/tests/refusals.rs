@@ -154,7 +154,7 @@ fn what_is_no_checkpoint_is_called_so() {
     fs::write(&path, &bytes).unwrap();
     let message = refused(&path, &[]).to_string();
     assert!(
-        message.contains("has format 3; this version reads format 5"),
+        message.contains("has format 3; this version reads format 6"),
         "{message}"
     );
 }
