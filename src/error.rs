@@ -139,6 +139,20 @@ pub fn named(stress: &[(String, f64)]) -> String {
     each.collect::<Vec<_>>().join(", ")
 }
 
+impl SetupError {
+    /// The same with another number of the particle that it names.
+    #[must_use]
+    pub(crate) fn renumbered(mut self, number: impl Fn(usize) -> usize) -> Self {
+        if let Self::Outside { particle, .. }
+        | Self::Value { particle, .. }
+        | Self::InitialStress { particle, .. } = &mut self
+        {
+            *particle = number(*particle);
+        }
+        self
+    }
+}
+
 /// A step that could not be completed; the particles hold the state in which it was noticed.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]

@@ -227,7 +227,10 @@ mod tests {
                     _ if i == cells + 1 => -1.0,
                     _ => -0.5,
                 };
-                assert!((shift - expected).abs() < 1e-6, "{cells} cells from {min}, DOF {i}: {shift}");
+                assert!(
+                    (shift - expected).abs() < 1e-6,
+                    "{cells} cells from {min}, DOF {i}: {shift}"
+                );
             }
         }
     }

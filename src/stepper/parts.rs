@@ -63,7 +63,8 @@ where
         if taken_in.is_err() {
             self.particles = before;
         }
-        taken_in
+        // Checks know particles by their places; the caller, by the numbers in which they were given.
+        taken_in.map_err(|error| error.renumbered(|place| self.order.number(place)))
     }
 
     /// Lets `edit` write what the transfer remembers of each of [`Stepper::particles`]: to be forgotten where
@@ -84,12 +85,12 @@ where
         }
         self.particles.validate_with(self.law.numbers())?;
         refuse_unknown_stress(&self.law, &self.particles)?;
-        refuse_without_capacity(&self.phase, &self.particles, |place| self.order.number(place))?;
-        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, |place| self.order.number(place))?;
+        refuse_without_capacity(&self.phase, &self.particles, |place| place)?;
+        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, |place| place)?;
         let positions = &self.particles.position;
         self.bins =
             Bins::without_lists(&self.grid, positions).map_err(|Outside(place)| SetupError::Outside {
-                particle: self.order.number(place),
+                particle: place,
                 position: values(&positions[place]),
             })?;
         for (cell, x) in self.bins.cells().iter().zip(&mut self.particles.position) {
@@ -228,5 +229,29 @@ mod tests {
         assert!(matches!(less, Err(SetupError::Lengths { .. })), "{less:?}");
         assert_eq!(stepper.particles().position, kept.position);
         stepper.step(0.02, &none).unwrap();
+    }
+
+    /// Errors name particles by the numbers in which they were given, whatever their order in memory is.
+    #[test]
+    fn mistakes_in_edited_particles_are_named_by_first_numbers() {
+        let (mut stepper, none) = (disc(), Forcing::none());
+        (0..40).for_each(|_| stepper.step(0.02, &none).unwrap());
+        let numbers = stepper.numbers().map(<[u32]>::to_vec).unwrap();
+        let place = (0..numbers.len()).find(|&p| numbers[p] as usize != p).unwrap();
+        let named = |edited: Result<(), SetupError>| match edited {
+            Err(SetupError::Value { particle, .. } | SetupError::Outside { particle, .. }) => particle,
+            other => panic!("{other:?}"),
+        };
+        let number = numbers[place] as usize;
+        type Number = <NeoHookean<f64> as LawSweep<f64, 2>>::Number;
+        let edits: [fn(&mut Particles<f64, 2, Number>, usize); 4] = [
+            |all, p| all.stress[p][0] = f64::NAN,
+            |all, p| all.volume[p] = 0.0,
+            |all, p| all.velocity[p][1] = f64::INFINITY,
+            |all, p| all.position[p][1] = 99.0,
+        ];
+        for edit in edits {
+            assert_eq!(named(stepper.edit_particles(|all| edit(all, place))), number);
+        }
     }
 }

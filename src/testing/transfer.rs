@@ -146,7 +146,8 @@ where
 
     /// From a particle to a DOF.
     fn offset(&self, p: usize, dof: usize) -> SVector<T, D> {
-        self.places.offset(&self.grid, dof, (&self.cells[p], &self.positions[p]))
+        self.places
+            .offset(&self.grid, dof, (&self.cells[p], &self.positions[p]))
     }
 
     fn state<X: Transfer<T, D>>(&self, velocity: impl Fn(&SVector<T, D>) -> SVector<T, D>) -> State<T, D, X> {

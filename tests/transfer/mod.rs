@@ -138,9 +138,7 @@ fn linear_velocities_come_back_far_from_the_origin_in_single_precision() {
             gradient: matrix![0.1_f32],
             moment: matrix![0.0],
         };
-        let setup = setup
-            .with_transfer(Apic)
-            .with_memory(vec![memory; before.len()]);
+        let setup = setup.with_transfer(Apic).with_memory(vec![memory; before.len()]);
         let mut stepper = Stepper::new(setup).unwrap();
         stepper.step(1e-3, &Forcing::none()).unwrap();
         for (x, v) in before.iter().zip(&stepper.particles().velocity) {

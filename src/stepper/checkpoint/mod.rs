@@ -60,7 +60,9 @@ where
     /// Those of `out`, and [`io::ErrorKind::Unsupported`] for scalars other than `f64` and `f32`.
     pub fn save(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut out = Out::new::<T>(out)?;
-        self.shape().into_iter().try_for_each(|(_, value)| out.count(value))?;
+        self.shape()
+            .into_iter()
+            .try_for_each(|(_, value)| out.count(value))?;
         save_window(&self.grid, &mut out)?;
         out.flag(self.strayed)?;
         out.numbers(&[self.time])?;

@@ -231,7 +231,7 @@ fn a_state_of_a_grid_of_another_shape_is_refused() {
 fn the_mass_of_edited_particles_is_restored() {
     let mut stepper = small();
     stepper
-        .edit_particles(|mut particles| particles.mass_mut().iter_mut().for_each(|m| *m *= 3.0))
+        .edit_particles(|particles| particles.mass.iter_mut().for_each(|m| *m *= 3.0))
         .unwrap();
     stepper.step(1.0, &Forcing::none()).unwrap();
     let mut resumed = small();
