@@ -8,7 +8,7 @@
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Method, MethodVisitor};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
@@ -39,7 +39,7 @@ impl MethodVisitor<f64> for Build {
         let moduli = Moduli::uniaxial(4e4).expect("a positive modulus");
         let stepper = Stepper::new(
             Setup::new(grid, basis, reconstruction, Hill { moduli }, OnePhase, particles)
-                .with_velocity_mass(VelocityMass::Consistent),
+                .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
         );
         Box::new(stepper.expect("a valid setup"))
     }

@@ -9,7 +9,7 @@ use materialpoint::basis::BSpline;
 use materialpoint::field::Field;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Logarithmic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::quadrature::gauss_legendre;
@@ -116,9 +116,10 @@ impl<T: Scalar> Default for LinearTaylor<T> {
 }
 
 impl<T: Scalar> Reconstruction<T, 1> for LinearTaylor<T> {
-    // Neither fit streams the particles: both stream Gauss points.
+    // Fits do not stream the particles but Gauss points.
     const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = false;
+    // Densities are fitted too, so momenta can be divided by any mass that is made of fits.
+    type Mass = VelocityMass;
 
     /// The step asks for it once; stress, mass and momentum then share the layouts.
     fn prepare(&mut self, cloud: &Cloud<'_, T, 1>) {
@@ -287,7 +288,7 @@ where
             OnePhase,
             particles,
         )
-        .with_velocity_mass(VelocityMass::Consistent),
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
     )?)
 }
 

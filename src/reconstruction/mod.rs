@@ -29,6 +29,7 @@ use nalgebra::SVector;
 use crate::error::SetupError;
 use crate::field::Field;
 use crate::grid::{Cell, Grid};
+use crate::mass::MassModel;
 use crate::particles::Bins;
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each};
@@ -235,17 +236,15 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     /// Whether [`Reconstruction::integrate`] streams the particles.
     const FIELDS_AT_PARTICLES: bool;
 
-    /// Whether [`Reconstruction::integrate_conserved`] streams the particles. The mass of the DOFs is then
-    /// the sum over the particles, lumped unless [`Reconstruction::PARTICLE_MATRIX`].
-    const AMOUNTS_AT_PARTICLES: bool;
+    /// What momenta of DOFs are divided by: [`ParticleMass`](crate::mass::ParticleMass) or
+    /// [`ParticleMatrix`](crate::mass::ParticleMatrix), masses of the particles as they are, or a choice of
+    /// [`VelocityMass`](crate::mass::VelocityMass) where densities are fitted
+    /// ([`Reconstruction::integrate_conserved`]).
+    type Mass: MassModel;
 
     /// Whether everything is streamed once at each particle, with the volume or amount that it has: the step
     /// then sums over the particles in passes of its own.
     const PLAIN: bool = false;
-
-    /// Whether both the acceleration and the velocity of the DOFs come from the consistent mass matrix of the
-    /// particles, `sum_p m_p phi_i phi_j`. Only with [`Reconstruction::AMOUNTS_AT_PARTICLES`].
-    const PARTICLE_MATRIX: bool = false;
 
     /// Whether each cell can be streamed alone, so that threads may share them
     /// ([`Reconstruction::integrate_cells`]).
@@ -287,12 +286,26 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
 
     /// Streams a density given by the `amount` of it that each particle holds (mass, momentum).
     /// Conservative reconstructions keep the sum of the amounts, in every cell and to round-off.
+    ///
+    /// A fit of one's own where [`Reconstruction::Mass`] is a [`VelocityMass`](crate::mass::VelocityMass):
+    /// without it that does not compile. Where the masses are those of the particles, these are streamed.
+    #[inline(always)]
     fn integrate_conserved<Q: Field<T>>(
         &mut self,
         cloud: &Cloud<'_, T, D>,
         amount: impl Fn(usize) -> Q,
-        sink: impl FnMut(&Point<T, D>, Q),
-    );
+        mut sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        const {
+            assert!(
+                Self::Mass::OF_PARTICLES,
+                "a fitted mass wants an own `integrate_conserved`"
+            )
+        };
+        for p in 0..cloud.positions.len() {
+            sink(&Point::of_particle(cloud, p), amount(p));
+        }
+    }
 
     /// A liquid flows: its pressure will be reconstructed with the stress.
     #[doc(hidden)]
@@ -328,7 +341,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
     ) {
         const {
             assert!(
-                !Self::CELLWISE || Self::AMOUNTS_AT_PARTICLES,
+                !Self::CELLWISE || Self::Mass::OF_PARTICLES,
                 "CELLWISE wants an own `integrate_conserved_cells`"
             )
         };
@@ -417,13 +430,13 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
 
     /// How far the particles of the occupied cell at `place` in the list of those determine its functions.
     /// Beyond one dimension the stepper ties the functions of cells that are not full to those of the next
-    /// ones ([`crate::mass::Penalty`]); those of cells that are alone it lumps. Only asked where
-    /// [`Reconstruction::PARTICLE_MATRIX`].
+    /// ones ([`crate::mass::Penalty`]); those of cells that are alone it lumps. Only asked where the mass is
+    /// the [`ParticleMatrix`](crate::mass::ParticleMatrix).
     fn filling(&self, _place: usize) -> Filling {
         const {
             assert!(
-                D == 1 || !Self::PARTICLE_MATRIX,
-                "PARTICLE_MATRIX wants an own `filling`"
+                D == 1 || !Self::Mass::IN_ACCELERATION,
+                "a matrix of the particles wants an own `filling`"
             )
         };
         Filling::Filled
@@ -462,12 +475,8 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Send + Sync {
 /// What constants of a reconstruction ask of each other; evaluated where a stepper is made.
 pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction<T, D>>() {
     assert!(
-        !R::PLAIN || R::FIELDS_AT_PARTICLES && R::AMOUNTS_AT_PARTICLES,
-        "PLAIN wants FIELDS_AT_PARTICLES and AMOUNTS_AT_PARTICLES"
-    );
-    assert!(
-        !R::PARTICLE_MATRIX || R::AMOUNTS_AT_PARTICLES,
-        "PARTICLE_MATRIX wants AMOUNTS_AT_PARTICLES"
+        !R::PLAIN || R::FIELDS_AT_PARTICLES && R::Mass::OF_PARTICLES && !R::Mass::IN_ACCELERATION,
+        "PLAIN wants FIELDS_AT_PARTICLES and ParticleMass"
     );
     // Four at once are prepared by nobody, and are asked for only where cells are streamed alone.
     assert!(!R::BATCHED || R::CELLWISE, "BATCHED wants CELLWISE");
@@ -480,6 +489,7 @@ pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction
 /// ```compile_fail,E0080
 /// use materialpoint::field::Field;
 /// use materialpoint::grid::Grid;
+/// use materialpoint::mass::ParticleMass;
 /// use materialpoint::particles::Bins;
 /// use materialpoint::reconstruction::{Cloud, Point, Reconstruction, Shepard};
 /// use nalgebra::{SVector, vector};
@@ -488,7 +498,7 @@ pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction
 ///
 /// impl Reconstruction<f64, 1> for Forgetful {
 ///     const FIELDS_AT_PARTICLES: bool = true;
-///     const AMOUNTS_AT_PARTICLES: bool = true;
+///     type Mass = ParticleMass;
 ///     const CELLWISE: bool = true; // but no `integrate_cells`
 ///
 ///     fn prepare(&mut self, _cloud: &Cloud<'_, f64, 1>) {}
@@ -500,15 +510,6 @@ pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction
 ///         sink: impl FnMut(&Point<f64, 1>, Q),
 ///     ) {
 ///         Shepard.integrate(cloud, value, sink);
-///     }
-///
-///     fn integrate_conserved<Q: Field<f64>>(
-///         &mut self,
-///         cloud: &Cloud<'_, f64, 1>,
-///         amount: impl Fn(usize) -> Q,
-///         sink: impl FnMut(&Point<f64, 1>, Q),
-///     ) {
-///         Shepard.integrate_conserved(cloud, amount, sink);
 ///     }
 /// }
 ///

@@ -5,6 +5,7 @@ use nalgebra::SVector;
 use super::{Cloud, Point, Reconstruction};
 use crate::basis::BasisFamily;
 use crate::field::Field;
+use crate::mass::VelocityMass;
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
 
@@ -317,7 +318,7 @@ impl<T: Scalar> CubicSpline<T> {
 
 impl<T: Scalar> Reconstruction<T, 1> for CubicSpline<T> {
     const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = false;
+    type Mass = VelocityMass;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, 1>) {
         self.sort(cloud.positions);

@@ -2,11 +2,12 @@
 
 use nalgebra::SVector;
 
-use super::{Cloud, Point, Reconstruction, Shepard};
+use super::{Cloud, Point, Reconstruction};
 use crate::basis::tensor::advance;
 use crate::error::SetupError;
 use crate::field::Field;
 use crate::grid::{Cell, Grid};
+use crate::mass::ParticleMass;
 use crate::scalar::Scalar;
 
 /// Streams a field at `S` sub-points per axis of each particle's current domain, each with the weight
@@ -108,7 +109,7 @@ fn holds_particles<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: &Ce
 
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {
     const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = true;
+    type Mass = ParticleMass;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, T, D>) {}
 
@@ -150,16 +151,6 @@ impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {
                 }
             }
         }
-    }
-
-    #[inline(always)]
-    fn integrate_conserved<Q: Field<T>>(
-        &mut self,
-        cloud: &Cloud<'_, T, D>,
-        amount: impl Fn(usize) -> Q,
-        sink: impl FnMut(&Point<T, D>, Q),
-    ) {
-        Shepard.integrate_conserved(cloud, amount, sink);
     }
 }
 

@@ -19,6 +19,7 @@ use super::{BatchStatus, Cloud, Kept, Patch, Point, Reconstruction, Values};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::grid::Cell;
+use crate::mass::VelocityMass;
 use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each};
@@ -650,7 +651,7 @@ fn fit_about_mean<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
 
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor<T, D, NB> {
     const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = false;
+    type Mass = VelocityMass;
     const CELLWISE: bool = true;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {

@@ -76,7 +76,7 @@ use crate::basis::{BasisFamily, FixedPoints};
 use crate::error::{SetupError, StepError};
 use crate::grid::{Cell, Grid};
 use crate::law::LawSweep;
-use crate::mass::VelocityMass;
+use crate::mass::{Divides, Divisor, MassModel};
 use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
@@ -84,7 +84,7 @@ use crate::reconstruction::{Cloud, CourantNumbers, Cut, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, packs_serve};
 use crate::transfer::{self, DofPlaces, Flip, Transfer};
-use dofs::{Dofs, MassModel};
+use dofs::Dofs;
 use order::Order;
 use pairs::Pairs;
 use spans::{SCALARS, Spans, VECTORS};
@@ -94,6 +94,7 @@ use spans::{SCALARS, Spans, VECTORS};
 pub struct Stepper<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>, X: Transfer<T, D> = Flip>
 where
     T: Scalar,
+    R: Reconstruction<T, D>,
 {
     grid: Grid<T, D>,
     basis: B,
@@ -142,8 +143,8 @@ where
     /// Of each a DOF that has a value there and is not among them.
     left_out: Vec<Option<usize>>,
     /// As the setup said it.
-    velocity_mass: VelocityMass,
-    mass: MassModel,
+    velocity_mass: R::Mass,
+    mass: Divisor,
     time: T,
     steps: usize,
     diagnostics: Diagnostics<T>,
@@ -164,7 +165,7 @@ where
     /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside
     /// the grid or larger than the basis allows ([`Domain`](crate::basis::Domain)), a constant of the phase
     /// makes no sense, or beyond one axis the reconstruction is of one phase only or wants a basis that is
-    /// one polynomial of its degree in each cell ([`Reconstruction::PARTICLE_MATRIX`]).
+    /// one polynomial of its degree in each cell ([`ParticleMatrix`](crate::mass::ParticleMatrix)).
     pub fn new(setup: Setup<T, D, B, R, L, P, X>) -> Result<Self, SetupError> {
         const {
             crate::basis::constants_agree::<T, D, B>();
@@ -188,7 +189,7 @@ where
         diffusion::refuse_without_capacity(&phase, &particles, |p| p)?;
         domain::lay::<T, D, B, _, _>(&grid, &mut particles);
         domain::validate::<T, D, B, _, _>(&grid, &particles, |p| p)?;
-        if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {
+        if P::FLOWS && R::Mass::IN_ACCELERATION && D > 1 {
             return Err(SetupError::OnePhaseOnly);
         }
         from_grid::refuse_what_it_cannot::<T, D, R, P, X>()?;
@@ -204,7 +205,7 @@ where
                 expected,
             });
         }
-        if R::PARTICLE_MATRIX && D > 1 {
+        if R::Mass::IN_ACCELERATION && D > 1 {
             polynomial::refuse_bends_within_cells(&basis, &grid)?;
         }
         let bins = find_cells(&grid, &surface, &mut particles.position)?;
@@ -227,7 +228,7 @@ where
                 },
                 functions: [along, along.pow(D as u32 - 1)],
                 flows: P::FLOWS,
-                pairs: R::PARTICLE_MATRIX,
+                pairs: R::Mass::IN_ACCELERATION,
             },
         );
         let mut stepper = Self {
@@ -261,7 +262,7 @@ where
             face_dofs: Vec::new(),
             left_out: Vec::new(),
             velocity_mass,
-            mass: MassModel::of::<T, D, R>(velocity_mass),
+            mass: velocity_mass.divisor(),
             time: T::zero(),
             steps: 0,
             diagnostics: parts.diagnostics,
@@ -283,7 +284,7 @@ where
             self.liquid = Dofs::new(basis, grid, self.mass);
             let count = basis.dof_count(grid);
             self.drag = vec![T::zero(); count];
-            if R::PARTICLE_MATRIX {
+            if R::Mass::IN_ACCELERATION {
                 self.joint = liquid::Joint::new(basis, grid, self.particles.len());
             }
         }
@@ -311,7 +312,7 @@ where
             let cells = self.particles.len().min(self.grid.cell_count());
             self.spans.kept.reserve_exact(cells.div_ceil(LANES) * R::KEPT);
         }
-        if R::AMOUNTS_AT_PARTICLES {
+        if R::Mass::OF_PARTICLES {
             return;
         }
         if P::FLOWS {

@@ -16,11 +16,10 @@ use std::ops::Range;
 
 use super::gauss::GaussRule;
 use super::taylor::hand_over;
-use super::{
-    BatchStatus, Cloud, CourantNumbers, Filling, Kept, Point, Reconstruction, Shepard, Stored, Values,
-};
+use super::{BatchStatus, Cloud, CourantNumbers, Filling, Kept, Point, Reconstruction, Stored, Values};
 use crate::basis::BasisFamily;
 use crate::field::Field;
+use crate::mass::ParticleMatrix;
 use crate::parallel::CELLS;
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, dispatch};
@@ -67,7 +66,8 @@ const ALIKE: f64 = 2.0;
 /// any slant, the particles themselves are the points of its force, nothing is relaxed there, and the stepper
 /// ties its functions to those of the next cells ([`crate::mass::Penalty`]). The same ties hold beyond one
 /// dimension where particles do not see all that a basis is made of. Cells that neither their particles nor
-/// the cells near them determine (one particle a cell, drops) are lumped, and stepped as by [`Shepard`].
+/// the cells near them determine (one particle a cell, drops) are lumped, and stepped as by
+/// [`Shepard`](super::Shepard).
 #[doc = include_str!("../../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {
@@ -171,8 +171,7 @@ fn make_room<A>(values: &mut Vec<A>, count: usize) {
 
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for RelaxedTaylor<T, D, NB> {
     const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = true;
-    const PARTICLE_MATRIX: bool = true;
+    type Mass = ParticleMatrix;
     const CELLWISE: bool = true;
     const RELAXES: bool = true;
 
@@ -209,16 +208,6 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
 
     fn fit_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Values<T, Q> + Sync)) {
         self.sum_field(cloud, value);
-    }
-
-    #[inline(always)]
-    fn integrate_conserved<Q: Field<T>>(
-        &mut self,
-        cloud: &Cloud<'_, T, D>,
-        amount: impl Fn(usize) -> Q,
-        sink: impl FnMut(&Point<T, D>, Q),
-    ) {
-        Shepard.integrate_conserved(cloud, amount, sink);
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@
 use nalgebra::SVector;
 
 use super::stream::{Streamed, collect, largest_response, relative_error, uneven};
+use crate::mass::MassModel;
 use crate::reconstruction::{Cloud, Kept, Point, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Plain};
@@ -32,7 +33,7 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
         let four = batched(reconstruction, cloud, false, &uneven);
         same(Property::FourStreamTheSame, cloud, whole, four, most)?;
     }
-    if R::AMOUNTS_AT_PARTICLES {
+    if R::Mass::OF_PARTICLES {
         return Ok(());
     }
     conserved(reconstruction, cloud)

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use materialpoint::field::Field;
 use materialpoint::grid::Grid;
+use materialpoint::mass::VelocityMass;
 use materialpoint::reconstruction::{
     BatchStatus, Cloud, CubicSpline, Kept, Point, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor,
     Values,
@@ -239,7 +240,7 @@ impl<const AT: bool> Faulty<AT> {
 
 impl<const AT: bool> Reconstruction<f64, 1> for Faulty<AT> {
     const FIELDS_AT_PARTICLES: bool = AT;
-    const AMOUNTS_AT_PARTICLES: bool = false;
+    type Mass = VelocityMass;
 
     fn prepare(&mut self, cloud: &Cloud<'_, f64, 1>) {
         self.smallest = cloud.positions.iter().fold(self.smallest, |m, x| m.min(x[0]));
@@ -370,7 +371,7 @@ struct Doors(Taylor<f64, 1, 3>, Door);
 
 impl Reconstruction<f64, 1> for Doors {
     const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = false;
+    type Mass = VelocityMass;
     const CELLWISE: bool = true;
     const BATCHED: bool = true;
 
@@ -586,7 +587,7 @@ impl Lines {
 
 impl Reconstruction<f64, 1> for Lines {
     const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = false;
+    type Mass = VelocityMass;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, f64, 1>) {}
 
