@@ -1,6 +1,6 @@
 //! Shepard: the mapping of the plain material point method.
 
-use super::{Cloud, Point, Reconstruction};
+use super::{AtParticles, Cloud, Point, Reconstruction};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::mass::ParticleMass;
@@ -19,9 +19,8 @@ impl Shepard {
 }
 
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
-    const FIELDS_AT_PARTICLES: bool = true;
+    type Points = AtParticles;
     type Mass = ParticleMass;
-    const PLAIN: bool = true;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, T, D>) {}
 

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{Cloud, Point, Reconstruction};
+use super::{Anywhere, Cloud, Point, Reconstruction};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::mass::VelocityMass;
@@ -317,7 +317,7 @@ impl<T: Scalar> CubicSpline<T> {
 }
 
 impl<T: Scalar> Reconstruction<T, 1> for CubicSpline<T> {
-    const FIELDS_AT_PARTICLES: bool = false;
+    type Points = Anywhere;
     type Mass = VelocityMass;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, 1>) {

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{Cloud, Point, Reconstruction};
+use super::{Anywhere, Cloud, Point, Reconstruction};
 use crate::basis::tensor::advance;
 use crate::error::SetupError;
 use crate::field::Field;
@@ -108,7 +108,7 @@ fn holds_particles<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: &Ce
 }
 
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {
-    const FIELDS_AT_PARTICLES: bool = false;
+    type Points = Anywhere;
     type Mass = ParticleMass;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, T, D>) {}

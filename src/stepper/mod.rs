@@ -80,7 +80,7 @@ use crate::mass::{Divides, Divisor, MassModel};
 use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, CourantNumbers, Cut, Reconstruction};
+use crate::reconstruction::{Cloud, CourantNumbers, Cut, Reconstruction, Streams};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, packs_serve};
 use crate::transfer::{self, DofPlaces, Flip, Transfer};
@@ -307,10 +307,11 @@ where
             (false, true) => [diffusion::SCALARS, 1],
             (false, false) => [1, 1],
         };
-        self.spans.allocate(each, R::CELLWISE, dofs);
+        self.spans.allocate(each, R::Points::IN_CELLS, dofs);
         if self.batched() {
             let cells = self.particles.len().min(self.grid.cell_count());
-            self.spans.kept.reserve_exact(cells.div_ceil(LANES) * R::KEPT);
+            let numbers = cells.div_ceil(LANES) * R::Points::KEPT;
+            self.spans.kept.reserve_exact(numbers);
         }
         if R::Mass::OF_PARTICLES {
             return;
@@ -393,7 +394,10 @@ where
 
     /// Whether a step is worth being sent to a pool of threads.
     fn is_worth_sending(&self) -> bool {
-        let cells = if R::PLAIN { 0 } else { self.bins.occupied().len() };
+        let cells = match R::Points::AT_PARTICLES {
+            true => 0,
+            false => self.bins.occupied().len(),
+        };
         are_many::<D>(self.particles.len(), PARTICLES) || are_many::<D>(cells, CELLS)
     }
 
@@ -407,7 +411,7 @@ where
         if self.order.is_lost() {
             self.restore_order();
         }
-        let fits = !R::PLAIN;
+        let fits = !R::Points::AT_PARTICLES;
         if fits || B::TAKES_IN_CELLS {
             self.bins.list(&self.grid);
         }
@@ -418,7 +422,7 @@ where
         if fits {
             self.cut_cells();
         }
-        if self.batched() && !R::NON_LOCAL {
+        if self.batched() && !R::Points::NON_LOCAL {
             return;
         }
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
@@ -434,7 +438,7 @@ where
         let can = const { transfer::fit::<T, D, B, R>() };
         can && self.is_wide_enough()
             && packs_serve::<T>()
-            && (1..=transfer::MOST_POINTS).contains(&self.reconstruction.line().count())
+            && (1..=transfer::MOST_POINTS).contains(&R::Points::line(&self.reconstruction).count())
     }
 
     /// Whether the functions that fits are integrated with all are of DOFs that there are: a stencil may be

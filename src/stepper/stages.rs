@@ -17,7 +17,7 @@ use crate::field::{MassMomentum, Symmetric};
 use crate::law::LawSweep;
 use crate::mass::{Divisor, MassModel};
 use crate::phase::Phase;
-use crate::reconstruction::{Reconstruction, Stresses};
+use crate::reconstruction::{Reconstruction, Streams, Stresses};
 use crate::scalar::Scalar;
 use crate::transfer::Drift;
 use crate::transfer::Transfer;
@@ -98,7 +98,7 @@ where
         if const { P::FLOWS } {
             self.find_seals(forcing);
         }
-        match const { (R::PLAIN, P::FLOWS, R::Mass::OF_PARTICLES) } {
+        match const { (R::Points::AT_PARTICLES, P::FLOWS, R::Mass::OF_PARTICLES) } {
             (true, false, _) => self.sum::<1, 0, 1>(even),
             (true, true, _) => self.sum::<3, 2, 2>(even),
             (false, false, _) => self.sum::<1, 0, 0>(even),
@@ -108,7 +108,7 @@ where
         if const { R::Mass::IN_ACCELERATION } {
             self.assemble_matrices();
         }
-        if const { !R::PLAIN } {
+        if const { !R::Points::AT_PARTICLES } {
             self.integrate_forces(even);
         }
         if const { P::FLOWS } {
@@ -176,7 +176,7 @@ where
                 Targets::<T, D, 0, 0, 1>::of_forces(first(forces)),
             );
         }
-        if batched && !R::NON_LOCAL {
+        if batched && !R::Points::NON_LOCAL {
             let reduced = self.spans.reduced.iter().sum();
             self.diagnostics.record_reduced(reduced);
         }

@@ -99,6 +99,10 @@ where
 {
     type Output = Built<D>;
 
+    fn lends_virtual_points(&self) -> bool {
+        self.virtual_points
+    }
+
     fn visit<B, R>(mut self, basis: B, reconstruction: R) -> Self::Output
     where
         B: BasisFamily<T, D> + Send + 'static,
@@ -130,7 +134,7 @@ impl<T, const D: usize> Parts<T, D> {
     fn of_phase<B, R, P>(
         self,
         basis: B,
-        mut reconstruction: R,
+        reconstruction: R,
         phase: P,
         data: fn(PoreLiquid<f64, D>) -> P::Particle,
     ) -> Built<D>
@@ -144,7 +148,6 @@ impl<T, const D: usize> Parts<T, D> {
     {
         let mass = R::Mass::named(self.velocity_mass);
         let mass = mass.ok_or(BuildError::NoSuchMass(self.velocity_mass))?;
-        reconstruction.lend_virtual_points(self.virtual_points);
         let pores = P::FLOWS.then_some(self.pores);
         let particles = made_of(self.particles, pores, data, &self.law, self.under_stress)?;
         let setup = Setup::new(self.grid, basis, reconstruction, self.law, phase, particles);

@@ -16,7 +16,10 @@ use std::ops::Range;
 
 use super::gauss::GaussRule;
 use super::taylor::hand_over;
-use super::{BatchStatus, Cloud, CourantNumbers, Filling, Kept, Point, Reconstruction, Stored, Values};
+use super::{
+    BatchStatus, CellStream, Cloud, CourantNumbers, Filling, FourCells, InFours, Kept, Point, Reconstruction,
+    Stored, Values,
+};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::mass::ParticleMatrix;
@@ -170,13 +173,9 @@ fn make_room<A>(values: &mut Vec<A>, count: usize) {
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for RelaxedTaylor<T, D, NB> {
-    const FIELDS_AT_PARTICLES: bool = false;
+    type Points = InFours;
     type Mass = ParticleMatrix;
-    const CELLWISE: bool = true;
     const RELAXES: bool = true;
-
-    const BATCHED: bool = true;
-    const NON_LOCAL: bool = true;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
         self.reserve(cloud.grid.cell_count());
@@ -195,7 +194,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     ) {
         // Not what a step calls: that streams cells, and allocates nothing.
         let values: Vec<Q> = (0..cloud.positions.len()).map(value).collect();
-        self.fit_field(cloud, &Stored(&values));
+        self.take_in_field(cloud, &Stored(&values));
         self.integrate_cells(cloud, 0..self.cells.len(), |p| values[p], sink);
     }
 
@@ -206,10 +205,37 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         }
     }
 
-    fn fit_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Values<T, Q> + Sync)) {
-        self.sum_field(cloud, value);
+    fn relax<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        weights: Option<&[T]>,
+        crossed: &[CourantNumbers<T>],
+        values: &mut [Q],
+    ) {
+        match weights {
+            None => self.relax_towards_both(cloud, crossed, values),
+            Some(weights) => self.relax_towards_own(cloud, weights, crossed, values),
+        }
     }
 
+    fn filling(&self, place: usize) -> Filling {
+        self.cells.get(place).map_or(Filling::Filled, |cell| cell.filling)
+    }
+
+    fn reduced_cells(&self) -> usize {
+        self.reduced
+    }
+
+    fn bytes(&self) -> usize {
+        self.cells.capacity() * size_of::<RelaxedCell>()
+            + self.grams.capacity() * size_of::<KeptProducts<T, NB>>()
+            + self.fits.capacity() * size_of::<FourFits<T, D, NB>>()
+            + self.sums.capacity() * size_of::<[T; LANES]>()
+            + self.pulls.bytes()
+    }
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> CellStream<T, D> for RelaxedTaylor<T, D, NB> {
     #[inline(always)]
     fn integrate_cells<Q: Field<T>>(
         &self,
@@ -219,6 +245,14 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
         dispatch!(T, |k| self.integrate_in(k, cloud, cells, &value, &mut sink));
+    }
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for RelaxedTaylor<T, D, NB> {
+    const NON_LOCAL: bool = true;
+
+    fn take_in_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Values<T, Q> + Sync)) {
+        self.sum_field(cloud, value);
     }
 
     fn line(&self) -> impl Iterator<Item = T> {
@@ -247,8 +281,6 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         }
         self.batch_status(cells)
     }
-
-    const FITS_TAYLOR: bool = true;
 
     fn weighted_line(&self) -> impl Iterator<Item = (T, T)> {
         self.rule.weighted_line()
@@ -297,34 +329,5 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
             self.integrate_apart(cloud, place, value, sink);
         }
         true
-    }
-
-    fn relax<Q: Field<T>>(
-        &mut self,
-        cloud: &Cloud<'_, T, D>,
-        weights: Option<&[T]>,
-        crossed: &[CourantNumbers<T>],
-        values: &mut [Q],
-    ) {
-        match weights {
-            None => self.relax_towards_both(cloud, crossed, values),
-            Some(weights) => self.relax_towards_own(cloud, weights, crossed, values),
-        }
-    }
-
-    fn filling(&self, place: usize) -> Filling {
-        self.cells.get(place).map_or(Filling::Filled, |cell| cell.filling)
-    }
-
-    fn reduced_cells(&self) -> usize {
-        self.reduced
-    }
-
-    fn bytes(&self) -> usize {
-        self.cells.capacity() * size_of::<RelaxedCell>()
-            + self.grams.capacity() * size_of::<KeptProducts<T, NB>>()
-            + self.fits.capacity() * size_of::<FourFits<T, D, NB>>()
-            + self.sums.capacity() * size_of::<[T; LANES]>()
-            + self.pulls.bytes()
     }
 }
