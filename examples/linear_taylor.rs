@@ -15,7 +15,7 @@ use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::quadrature::gauss_legendre;
 use materialpoint::reconstruction::{
-    CellStream, Cloud, InCells, Patch, Point, Reconstruction, Shepard, Taylor,
+    CellStream, Cloud, InCells, NoFilter, Patch, Point, Reconstruction, Shepard, Taylor,
 };
 use materialpoint::reference::{self, LagrangianBar, Reference};
 use materialpoint::scalar::Scalar;
@@ -125,6 +125,7 @@ impl<T: Scalar> Reconstruction<T, 1> for LinearTaylor<T> {
     type Points = InCells;
     // Densities are fitted too, so momenta can be divided by any mass that is made of fits.
     type Mass = VelocityMass;
+    type Filter = NoFilter;
 
     /// The step asks for it once; stress, mass and momentum then share the layouts.
     fn prepare(&mut self, cloud: &Cloud<'_, T, 1>) {

@@ -5,6 +5,7 @@
 //! themselves, sub-points are spread over each particle's domain, Taylor least squares and the cubic spline
 //! stream Gauss points.
 
+mod filter;
 mod four_cells;
 mod gauss;
 mod patch;
@@ -16,6 +17,9 @@ mod sub_points;
 mod taylor;
 mod values;
 
+pub(crate) use filter::sealed::Filters;
+pub(crate) use filter::{CourantNumbers, Filling};
+pub use filter::{Filter, NoFilter, NullSpace};
 pub(crate) use four_cells::{BatchStatus, FourCells, InFours, Kept, batch_of_cells};
 pub use patch::{Cut, Patch};
 pub(crate) use points::sealed::Streams;
@@ -146,28 +150,6 @@ impl<T, const D: usize> Point<T, D> {
     }
 }
 
-/// How far the particles of a cell determine its functions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Filling {
-    /// They fill it, as far as its functions can tell.
-    Filled,
-    /// They fill a part, or see all functions but squares.
-    PartlyFilled,
-    /// They do not, but better cells are near.
-    Underdetermined,
-    /// Neither do those near it.
-    Isolated,
-}
-
-/// Parts of a cell that are crossed in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CourantNumbers<T> {
-    /// By a wave.
-    pub wave: T,
-    /// By the particles.
-    pub motion: T,
-}
-
 /// Turns particle data into quadrature points with weighted values.
 ///
 /// Three types say what a step does with it: where its points are, what momenta are divided by, and what is
@@ -189,8 +171,9 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sized + Send + Sync {
     /// ([`Reconstruction::integrate_conserved`]).
     type Mass: MassModel;
 
-    /// Whether [`Reconstruction::relax`] does anything.
-    const RELAXES: bool = false;
+    /// What a step takes from stress and velocity of the particles: [`NoFilter`], or the [`NullSpace`] of
+    /// [`RelaxedTaylor`].
+    type Filter: Filter<T, D, Self>;
 
     /// Takes in the geometry. Every field streamed until the next call shares it.
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>);
@@ -227,39 +210,6 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sized + Send + Sync {
         }
     }
 
-    /// A liquid flows: its pressure will be reconstructed with the stress.
-    #[doc(hidden)]
-    fn configure_for_saturated(&mut self) {}
-
-    /// Moves the particles' `values` towards what the reconstruction sees of them; `weights` (masses) make
-    /// the fit keep the weighted sum. `crossed` says for each occupied cell which part of it a wave and its
-    /// particles cross in this step: the measures of time for a relaxation. The stepper calls it for the
-    /// stress, unweighted, right after the force is assembled (a law with a state is then strained towards
-    /// the moved stress), and for the velocity, weighted, before it is mapped to the DOFs.
-    fn relax<Q: Field<T>>(
-        &mut self,
-        _cloud: &Cloud<'_, T, D>,
-        _weights: Option<&[T]>,
-        _crossed: &[CourantNumbers<T>],
-        _values: &mut [Q],
-    ) {
-        const { assert!(!Self::RELAXES, "RELAXES wants an own `relax`") };
-    }
-
-    /// How far the particles of the occupied cell at `place` in the list of those determine its functions.
-    /// Beyond one dimension the stepper ties the functions of cells that are not full to those of the next
-    /// ones ([`crate::mass::Penalty`]); those of cells that are alone it lumps. Only asked where the mass is
-    /// the [`ParticleMatrix`](crate::mass::ParticleMatrix).
-    fn filling(&self, _place: usize) -> Filling {
-        const {
-            assert!(
-                D == 1 || !Self::Mass::IN_ACCELERATION,
-                "a matrix of the particles wants an own `filling`"
-            )
-        };
-        Filling::Filled
-    }
-
     /// Cells that hold particles but, at the last [`Reconstruction::prepare`], could not be fitted with
     /// the full set of functions.
     fn reduced_cells(&self) -> usize {
@@ -288,7 +238,7 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sized + Send + Sync {
 /// What constants of a reconstruction ask of each other; evaluated where a stepper is made.
 pub(crate) const fn constants_agree<T: Scalar, const D: usize, R: Reconstruction<T, D>>() {
     assert!(
-        D == 1 || !R::Mass::IN_ACCELERATION || R::RELAXES,
+        D == 1 || !R::Mass::IN_ACCELERATION || R::Filter::FILTERS,
         "beyond one axis a matrix of the particles wants to know which cells they fill"
     );
 }

@@ -75,13 +75,14 @@ impl<T: Scalar, const D: usize, R: CellStream<T, D>> Streams<T, D, R> for InCell
 /// ```compile_fail,E0277
 /// use materialpoint::field::Field;
 /// use materialpoint::mass::ParticleMass;
-/// use materialpoint::reconstruction::{Cloud, InCells, Point, Reconstruction, Shepard};
+/// use materialpoint::reconstruction::{Cloud, InCells, NoFilter, Point, Reconstruction, Shepard};
 ///
 /// struct Forgetful;
 ///
 /// impl Reconstruction<f64, 1> for Forgetful {
 ///     type Points = InCells; // but no `CellStream`
 ///     type Mass = ParticleMass;
+///     type Filter = NoFilter;
 ///
 ///     fn prepare(&mut self, _cloud: &Cloud<'_, f64, 1>) {}
 ///

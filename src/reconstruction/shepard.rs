@@ -1,6 +1,6 @@
 //! Shepard: the mapping of the plain material point method.
 
-use super::{AtParticles, Cloud, Point, Reconstruction};
+use super::{AtParticles, Cloud, NoFilter, Point, Reconstruction};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::mass::ParticleMass;
@@ -21,6 +21,7 @@ impl Shepard {
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
     type Points = AtParticles;
     type Mass = ParticleMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, T, D>) {}
 

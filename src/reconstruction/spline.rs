@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{Anywhere, Cloud, Point, Reconstruction};
+use super::{Anywhere, Cloud, NoFilter, Point, Reconstruction};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::mass::VelocityMass;
@@ -319,6 +319,7 @@ impl<T: Scalar> CubicSpline<T> {
 impl<T: Scalar> Reconstruction<T, 1> for CubicSpline<T> {
     type Points = Anywhere;
     type Mass = VelocityMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, 1>) {
         self.sort(cloud.positions);

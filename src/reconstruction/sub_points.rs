@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{Anywhere, Cloud, Point, Reconstruction};
+use super::{Anywhere, Cloud, NoFilter, Point, Reconstruction};
 use crate::basis::tensor::advance;
 use crate::error::SetupError;
 use crate::field::Field;
@@ -110,6 +110,7 @@ fn holds_particles<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: &Ce
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {
     type Points = Anywhere;
     type Mass = ParticleMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, T, D>) {}
 

@@ -15,7 +15,9 @@ use cell_group::{Conserved, ConservedValues, Free};
 use virtual_points::Lent;
 
 use super::gauss::GaussRule;
-use super::{BatchStatus, CellStream, Cloud, FourCells, InFours, Kept, Patch, Point, Reconstruction, Values};
+use super::{
+    BatchStatus, CellStream, Cloud, FourCells, InFours, Kept, NoFilter, Patch, Point, Reconstruction, Values,
+};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::grid::Cell;
@@ -652,6 +654,7 @@ fn fit_about_mean<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor<T, D, NB> {
     type Points = InFours;
     type Mass = VelocityMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
         // One slot for each cell there is, so that a later step never has to allocate.

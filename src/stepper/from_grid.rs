@@ -21,7 +21,7 @@ use crate::law::LawSweep;
 use crate::mass::MassModel;
 use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
 use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
+use crate::reconstruction::{Filters, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::{Packs, each};
 use crate::transfer::{
@@ -365,7 +365,7 @@ where
 {
     let reason = if P::FLOWS {
         "one phase: a liquid that flows has velocities of its own"
-    } else if R::RELAXES || R::Mass::IN_ACCELERATION {
+    } else if R::Filter::FILTERS || R::Mass::IN_ACCELERATION {
         "lumped masses and a velocity that nothing relaxes"
     } else if !R::Mass::OF_PARTICLES {
         "masses that are sums over the particles: these would not take back what a fit changed"

@@ -80,7 +80,7 @@ use crate::mass::{Divides, Divisor, MassModel};
 use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, CourantNumbers, Cut, Reconstruction, Streams};
+use crate::reconstruction::{Cloud, CourantNumbers, Cut, Filters, Reconstruction, Streams};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, packs_serve};
 use crate::transfer::{self, DofPlaces, Flip, Transfer};
@@ -221,8 +221,8 @@ where
             &particles.mass,
             Counts {
                 surface: surface.len(),
-                crossed: if R::RELAXES { grid.cell_count() } else { 0 },
-                relaxed: match R::RELAXES && law.remembers() {
+                crossed: if R::Filter::FILTERS { grid.cell_count() } else { 0 },
+                relaxed: match R::Filter::FILTERS && law.remembers() {
                     true => particles.len(),
                     false => 0,
                 },
@@ -268,7 +268,7 @@ where
             diagnostics: parts.diagnostics,
         };
         if P::FLOWS {
-            stepper.reconstruction.configure_for_saturated();
+            R::Filter::suit_liquid(&mut stepper.reconstruction);
         }
         stepper.allocate_dofs();
         stepper.allocate();

@@ -17,7 +17,7 @@ use crate::field::{MassMomentum, Symmetric};
 use crate::law::LawSweep;
 use crate::mass::{Divisor, MassModel};
 use crate::phase::Phase;
-use crate::reconstruction::{Reconstruction, Streams, Stresses};
+use crate::reconstruction::{Filters, Reconstruction, Streams, Stresses};
 use crate::scalar::Scalar;
 use crate::transfer::Drift;
 use crate::transfer::Transfer;
@@ -208,7 +208,7 @@ where
     /// Velocities of the particles, and the momenta of the DOFs where those of the particles are simply
     /// summed.
     pub(super) fn kick_particles(&mut self, dt: T) -> Totals<T, D> {
-        match const { (P::FLOWS, R::Mass::OF_PARTICLES && !R::RELAXES) } {
+        match const { (P::FLOWS, R::Mass::OF_PARTICLES && !R::Filter::FILTERS) } {
             (false, false) => self.kick_phases::<1, 0>(dt),
             (false, true) => self.kick_phases::<1, 1>(dt),
             (true, false) => self.kick_phases::<2, 0>(dt),
@@ -232,16 +232,16 @@ where
 
     /// The reconstruction's touch on the particles.
     pub(super) fn filter(&mut self, dt: T) {
-        if const { R::RELAXES && P::FLOWS } {
+        if const { R::Filter::FILTERS && P::FLOWS } {
             self.relax_both(dt);
-        } else if const { R::RELAXES } {
+        } else if const { R::Filter::FILTERS } {
             self.relax(dt);
         }
     }
 
     /// Momenta and masses of the DOFs; returns their totals, of both phases.
     pub(super) fn map_momenta(&mut self) -> [MassMomentum<T, D>; 2] {
-        match const { (R::Mass::OF_PARTICLES, R::RELAXES, P::FLOWS) } {
+        match const { (R::Mass::OF_PARTICLES, R::Filter::FILTERS, P::FLOWS) } {
             (true, false, _) => {}
             (true, true, false) => self.sum_momenta::<1>(),
             (true, true, true) => self.sum_momenta::<2>(),

@@ -17,8 +17,8 @@ use std::ops::Range;
 use super::gauss::GaussRule;
 use super::taylor::hand_over;
 use super::{
-    BatchStatus, CellStream, Cloud, CourantNumbers, Filling, FourCells, InFours, Kept, Point, Reconstruction,
-    Stored, Values,
+    BatchStatus, CellStream, Cloud, CourantNumbers, Filling, Filter, Filters, FourCells, InFours, Kept,
+    NullSpace, Point, Reconstruction, Stored, Values,
 };
 use crate::basis::BasisFamily;
 use crate::field::Field;
@@ -175,7 +175,7 @@ fn make_room<A>(values: &mut Vec<A>, count: usize) {
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for RelaxedTaylor<T, D, NB> {
     type Points = InFours;
     type Mass = ParticleMatrix;
-    const RELAXES: bool = true;
+    type Filter = NullSpace;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
         self.reserve(cloud.grid.cell_count());
@@ -198,30 +198,6 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         self.integrate_cells(cloud, 0..self.cells.len(), |p| values[p], sink);
     }
 
-    fn configure_for_saturated(&mut self) {
-        self.components = D * D + 1;
-        if let Some(relaxation) = self.with_liquid {
-            self.relaxation = relaxation;
-        }
-    }
-
-    fn relax<Q: Field<T>>(
-        &mut self,
-        cloud: &Cloud<'_, T, D>,
-        weights: Option<&[T]>,
-        crossed: &[CourantNumbers<T>],
-        values: &mut [Q],
-    ) {
-        match weights {
-            None => self.relax_towards_both(cloud, crossed, values),
-            Some(weights) => self.relax_towards_own(cloud, weights, crossed, values),
-        }
-    }
-
-    fn filling(&self, place: usize) -> Filling {
-        self.cells.get(place).map_or(Filling::Filled, |cell| cell.filling)
-    }
-
     fn reduced_cells(&self) -> usize {
         self.reduced
     }
@@ -232,6 +208,36 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
             + self.fits.capacity() * size_of::<FourFits<T, D, NB>>()
             + self.sums.capacity() * size_of::<[T; LANES]>()
             + self.pulls.bytes()
+    }
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> Filter<T, D, RelaxedTaylor<T, D, NB>> for NullSpace {}
+
+impl<T: Scalar, const D: usize, const NB: usize> Filters<T, D, RelaxedTaylor<T, D, NB>> for NullSpace {
+    const FILTERS: bool = true;
+
+    fn relax<Q: Field<T>>(
+        fits: &mut RelaxedTaylor<T, D, NB>,
+        cloud: &Cloud<'_, T, D>,
+        weights: Option<&[T]>,
+        crossed: &[CourantNumbers<T>],
+        values: &mut [Q],
+    ) {
+        match weights {
+            None => fits.relax_towards_both(cloud, crossed, values),
+            Some(weights) => fits.relax_towards_own(cloud, weights, crossed, values),
+        }
+    }
+
+    fn filling(fits: &RelaxedTaylor<T, D, NB>, place: usize) -> Filling {
+        fits.cells.get(place).map_or(Filling::Filled, |cell| cell.filling)
+    }
+
+    fn suit_liquid(fits: &mut RelaxedTaylor<T, D, NB>) {
+        fits.components = D * D + 1;
+        if let Some(relaxation) = fits.with_liquid {
+            fits.relaxation = relaxation;
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::field::Field;
 use crate::grid::Grid;
 use crate::mass::VelocityMass;
 use crate::reconstruction::{
-    BatchStatus, CellStream, Cloud, FourCells, InFours, Kept, Point, Reconstruction, Taylor, Values,
+    BatchStatus, CellStream, Cloud, FourCells, InFours, Kept, NoFilter, Point, Reconstruction, Taylor, Values,
 };
 use crate::simd::{LANES, Packs};
 use crate::taylor::MOST_COMPONENTS;
@@ -36,6 +36,7 @@ struct Doors(Taylor<f64, 1, 3>, Door);
 impl Reconstruction<f64, 1> for Doors {
     type Points = InFours;
     type Mass = VelocityMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, cloud: &Cloud<'_, f64, 1>) {
         self.0.prepare(cloud);

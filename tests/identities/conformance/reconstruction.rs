@@ -6,8 +6,8 @@ use materialpoint::field::Field;
 use materialpoint::grid::Grid;
 use materialpoint::mass::{ParticleMass, VelocityMass};
 use materialpoint::reconstruction::{
-    Anywhere, AtParticles, CellStream, Cloud, CubicSpline, InCells, Point, Reconstruction, RelaxedTaylor,
-    Shepard, SubPoints, Taylor,
+    Anywhere, AtParticles, CellStream, Cloud, CubicSpline, InCells, NoFilter, Point, Reconstruction,
+    RelaxedTaylor, Shepard, SubPoints, Taylor,
 };
 use materialpoint::scalar::Scalar;
 use materialpoint::testing::{Failure, Measure, Property, ReconstructionClaims, check_reconstruction};
@@ -298,6 +298,7 @@ macro_rules! faulty {
         impl Reconstruction<f64, 1> for $name {
             type Points = $points;
             type Mass = $mass;
+            type Filter = NoFilter;
 
             fn prepare(&mut self, cloud: &Cloud<'_, f64, 1>) {
                 self.0.prepare(cloud);
@@ -409,6 +410,7 @@ struct Doors(Taylor<f64, 1, 3>, Door);
 impl Reconstruction<f64, 1> for Doors {
     type Points = InCells;
     type Mass = VelocityMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, cloud: &Cloud<'_, f64, 1>) {
         self.0.prepare(cloud);
@@ -578,6 +580,7 @@ impl Lines {
 impl Reconstruction<f64, 1> for Lines {
     type Points = Anywhere;
     type Mass = VelocityMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, f64, 1>) {}
 
