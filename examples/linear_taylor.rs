@@ -121,9 +121,9 @@ impl<T: Scalar> Default for LinearTaylor<T> {
 }
 
 impl<T: Scalar> Reconstruction<T, 1> for LinearTaylor<T> {
-    // What `CellStream` is for: threads may share the cells.
+    /// Cells are streamed one by one (`CellStream`), so that threads may share them.
     type Points = InCells;
-    // Densities are fitted too, so momenta can be divided by any mass that is made of fits.
+    /// Densities are fitted too: momenta may be divided by any mass of these fits.
     type Mass = VelocityMass;
     type Filter = NoFilter;
 

@@ -222,13 +222,6 @@ pub trait Reconstruction<T: Scalar, const D: usize>: Sized + Send + Sync {
         0
     }
 
-    /// Cells in which the last [`Reconstruction::integrate_conserved`] had to keep a density positive
-    /// ([`Field::DENSITIES`]), and drew all that it streamed towards its mean. What belongs to those
-    /// densities must be streamed together with them there.
-    fn limited_cells(&self) -> usize {
-        0
-    }
-
     /// Bytes allocated, for the user's information.
     fn bytes(&self) -> usize {
         0

@@ -207,6 +207,13 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         self
     }
 
+    /// Cells in which the last [`Reconstruction::integrate_conserved`] had to keep a density positive
+    /// ([`Field::DENSITIES`]), and drew all that it streamed towards its mean. What belongs to those
+    /// densities must be streamed together with them there.
+    pub fn limited_cells(&self) -> usize {
+        self.limited
+    }
+
     /// Coefficients of the conserved fit in every occupied cell, ascending, from the amounts (the fit's mean
     /// is the cell's sum of amounts over its volume).
     pub fn conserved_coefficients<Q: Field<T>>(
@@ -708,10 +715,6 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
 
     fn virtual_cells(&self) -> usize {
         self.lent
-    }
-
-    fn limited_cells(&self) -> usize {
-        self.limited
     }
 
     fn bytes(&self) -> usize {

@@ -1,4 +1,4 @@
-//! The reconstruction's touch on the particles.
+//! The filter of the particles' stress and velocity.
 
 use nalgebra::SMatrix;
 
@@ -27,7 +27,7 @@ where
     P: Phase<T, D>,
     X: Transfer<T, D>,
 {
-    /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing
+    /// Filters the particles: the stress after the force is assembled from it (nothing
     /// has used it since), the velocity after its update and before it is mapped.
     pub(super) fn relax(&mut self, dt: T) {
         self.measure_courant_numbers(dt);

@@ -230,7 +230,7 @@ where
         )
     }
 
-    /// The reconstruction's touch on the particles.
+    /// Takes from the particles what no fit sees.
     pub(super) fn filter(&mut self, dt: T) {
         if const { R::Filter::FILTERS && P::FLOWS } {
             self.relax_both(dt);

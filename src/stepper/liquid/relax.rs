@@ -1,4 +1,4 @@
-//! The reconstruction's touch on the particles of two phases.
+//! The filter of the particles of two phases.
 
 use super::super::Stepper;
 use super::joint::Joint;
