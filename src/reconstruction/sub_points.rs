@@ -11,14 +11,14 @@ use crate::mass::ParticleMass;
 use crate::scalar::Scalar;
 
 /// Streams a field at `S` sub-points per axis of each particle's current domain, each with the weight
-/// `V_p / S^D`, and the amounts (mass, momentum) at the particles as [`Shepard`] does: the dual domain method
-/// with sub-points of Dhakal & Zhang (J. Comput. Phys. 325, 2016; journal Table 8), made for
-/// [`DualDomain`](crate::basis::DualDomain) and usable with any family.
+/// `V_p / S^D`, and the amounts (mass, momentum) at the particles as [`Shepard`](super::Shepard) does: the
+/// dual domain method with sub-points of Dhakal & Zhang (J. Comput. Phys. 325, 2016; journal Table 8), made
+/// for [`DualDomain`](crate::basis::DualDomain) and usable with any family.
 ///
 /// * **Domain.** A box of volume `V_p` around the particle, in the shape of a cell: in 1-D
 ///   `[x_p - V_p/2, x_p + V_p/2]`. It grows and shrinks with the volume and does not turn or shear.
 /// * **Sub-points.** The midpoints of `S` equal parts of the box along each axis, so that one sub-point is
-///   the particle, to the bit [`Shepard`]. The field is constant over the domain.
+///   the particle, to the bit [`Shepard`](super::Shepard). The field is constant over the domain.
 /// * **Gradients.** The family's gradients for moving points ([`Point::moves`]), since sub-points cross cell
 ///   edges.
 /// * **Where there is no material.** A sub-point outside the grid (beyond a wall), or in a cell that holds no
