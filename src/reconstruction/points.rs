@@ -98,7 +98,7 @@ impl<T: Scalar, const D: usize, R: CellStream<T, D>> Streams<T, D, R> for InCell
 /// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not stream single cells of scalar `{T}` in `{D}` dimensions",
-    note = "a reconstruction with `type Points = InCells` implements `CellStream`; `Anywhere` asks for nothing"
+    note = "`type Points = InCells` goes with an implementation of `CellStream`; `Anywhere` asks for nothing"
 )]
 pub trait CellStream<T: Scalar, const D: usize>: Reconstruction<T, D> {
     /// What [`Reconstruction::integrate`] streams in the given `cells`, places in the list of occupied ones.
