@@ -21,7 +21,7 @@ use std::time::Instant;
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Basis, Method, MethodVisitor, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
@@ -93,7 +93,7 @@ impl MethodVisitor<f64> for Build {
         let moduli = Moduli::uniaxial(DENSITY * WAVE_SPEED * WAVE_SPEED).expect("a positive modulus");
         let stepper = Stepper::new(
             Setup::new(grid, basis, reconstruction, Hill { moduli }, OnePhase, particles)
-                .with_velocity_mass(VelocityMass::Consistent),
+                .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
         );
         Box::new(stepper.expect("a valid setup"))
     }

@@ -9,7 +9,7 @@ use std::time::Instant;
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Method, MethodVisitor};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, OnePhase, Phase, PoreLiquid, TwoPhase};
@@ -103,7 +103,7 @@ where
             phase,
             particles,
         )
-        .with_velocity_mass(VelocityMass::Consistent)
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent))
         .with_surface(vec![surface]),
     );
     Box::new(stepper.expect("a valid setup"))

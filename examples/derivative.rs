@@ -24,7 +24,7 @@ use dual::Dual;
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{CubicSpline, Reconstruction, RelaxedTaylor, Shepard, SubPoints, Taylor};
@@ -91,7 +91,7 @@ where
             OnePhase,
             particles,
         )
-        .with_velocity_mass(VelocityMass::Consistent),
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
     )?;
     let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
     let forcing = ends

@@ -12,7 +12,7 @@ use materialpoint::basis::{BasisFamily, Linear};
 use materialpoint::error::{GridError, SetupError};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Phase, PhaseStep};
 use materialpoint::reconstruction::{Reconstruction, Shepard};
@@ -182,7 +182,7 @@ where
             phase,
             particles,
         )
-        .with_velocity_mass(VelocityMass::Consistent),
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
     )
 }
 

@@ -4,16 +4,19 @@
 
 use std::error::Error;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use materialpoint::basis::BSpline;
 use materialpoint::field::Field;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Logarithmic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::quadrature::gauss_legendre;
-use materialpoint::reconstruction::{Cloud, Patch, Point, Reconstruction, Shepard, Taylor};
+use materialpoint::reconstruction::{
+    CellStream, Cloud, InCells, NoFilter, Patch, Point, Reconstruction, Shepard, Taylor,
+};
 use materialpoint::reference::{self, LagrangianBar, Reference};
 use materialpoint::scalar::Scalar;
 use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
@@ -87,15 +90,17 @@ impl<T: Scalar> LinearTaylor<T> {
         }
     }
 
-    /// Streams the line that `fit` finds in every occupied cell, given by its layout and its particles with
-    /// their local coordinates.
+    /// Streams the line that `fit` finds in each of the given occupied cells, from its layout and its
+    /// particles with their local coordinates.
     fn stream<Q: Field<T>>(
         &self,
         cloud: &Cloud<'_, T, 1>,
+        cells: Range<usize>,
         fit: impl Fn(&Layout<T>, &[u32]) -> [Q; 2],
         mut sink: impl FnMut(&Point<T, 1>, Q),
     ) {
-        for (&cell, layout) in cloud.bins.occupied().iter().zip(&self.layouts) {
+        let occupied = &cloud.bins.occupied()[cells.clone()];
+        for (&cell, layout) in occupied.iter().zip(&self.layouts[cells]) {
             let patch = &layout.patch;
             let [a, b] = fit(layout, cloud.bins.particles_in(cell as usize));
             for &(s, weight) in &self.rule {
@@ -116,9 +121,11 @@ impl<T: Scalar> Default for LinearTaylor<T> {
 }
 
 impl<T: Scalar> Reconstruction<T, 1> for LinearTaylor<T> {
-    // Neither fit streams the particles: both stream Gauss points.
-    const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = false;
+    /// Cells are streamed one by one (`CellStream`), so that threads may share them.
+    type Points = InCells;
+    /// Densities are fitted too: momenta may be divided by any mass of these fits.
+    type Mass = VelocityMass;
+    type Filter = NoFilter;
 
     /// The step asks for it once; stress, mass and momentum then share the layouts.
     fn prepare(&mut self, cloud: &Cloud<'_, T, 1>) {
@@ -128,11 +135,32 @@ impl<T: Scalar> Reconstruction<T, 1> for LinearTaylor<T> {
             .extend(cells.map(|&cell| Layout::new(cloud, cell as usize)));
     }
 
-    /// The free fit (stress): the line of least squares through the values, which goes through their mean at
-    /// the mean of `s`.
     fn integrate<Q: Field<T>>(
         &mut self,
         cloud: &Cloud<'_, T, 1>,
+        value: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<T, 1>, Q),
+    ) {
+        self.integrate_cells(cloud, 0..self.layouts.len(), value, sink);
+    }
+
+    fn integrate_conserved<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, 1>,
+        amount: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<T, 1>, Q),
+    ) {
+        self.integrate_conserved_cells(cloud, 0..self.layouts.len(), amount, sink);
+    }
+}
+
+impl<T: Scalar> CellStream<T, 1> for LinearTaylor<T> {
+    /// The free fit (stress): the line of least squares through the values, which goes through their mean at
+    /// the mean of `s`.
+    fn integrate_cells<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, 1>,
+        cells: Range<usize>,
         value: impl Fn(usize) -> Q,
         sink: impl FnMut(&Point<T, 1>, Q),
     ) {
@@ -147,14 +175,15 @@ impl<T: Scalar> Reconstruction<T, 1> for LinearTaylor<T> {
             mean.add_scaled(-layout.mean, slope);
             [mean, slope]
         };
-        self.stream(cloud, fit, sink);
+        self.stream(cloud, cells, fit, sink);
     }
 
     /// The conservative fit (mass, momentum): the first coefficient is what the cell holds over its volume,
     /// and the second function integrates to zero. So every cell keeps its amount, whatever the slope is.
-    fn integrate_conserved<Q: Field<T>>(
-        &mut self,
+    fn integrate_conserved_cells<Q: Field<T>>(
+        &self,
         cloud: &Cloud<'_, T, 1>,
+        cells: Range<usize>,
         amount: impl Fn(usize) -> Q,
         sink: impl FnMut(&Point<T, 1>, Q),
     ) {
@@ -172,7 +201,7 @@ impl<T: Scalar> Reconstruction<T, 1> for LinearTaylor<T> {
             }
             [mean, slope]
         };
-        self.stream(cloud, fit, sink);
+        self.stream(cloud, cells, fit, sink);
     }
 }
 
@@ -287,7 +316,7 @@ where
             OnePhase,
             particles,
         )
-        .with_velocity_mass(VelocityMass::Consistent),
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
     )?)
 }
 

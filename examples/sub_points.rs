@@ -12,7 +12,7 @@ use std::time::Instant;
 use materialpoint::basis::{AxisBasis, AxisCell, BasisFamily, DualDomain, Functions};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, SubPoints, Taylor};
@@ -150,7 +150,7 @@ where
             OnePhase,
             Particles::at_rest(&points, DENSITY),
         )
-        .with_velocity_mass(VelocityMass::Consistent),
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
     )?;
     let base = Face {
         axis: 0,

@@ -12,7 +12,7 @@ use materialpoint::basis::Linear;
 use materialpoint::error::SetupError;
 use materialpoint::grid::{Face, Grid};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Phase, PhaseStep};
 use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
@@ -181,7 +181,7 @@ where
         phase,
         Particles::default(),
     )
-    .with_velocity_mass(VelocityMass::Consistent);
+    .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent));
     let frequency = wave * (modulus / DENSITY).sqrt();
     swing(setup, |x| vector![(wave * x[0]).sin()], frequency)
 }
@@ -206,7 +206,7 @@ where
         phase,
         Particles::default(),
     )
-    .with_velocity_mass(VelocityMass::Consistent);
+    .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent));
     let shape = |x: &SVector<f64, 2>| {
         let ([sx, sy], [cx, cy]) = (
             [x[0], x[1]].map(|x| (wave * x).sin()),

@@ -103,6 +103,11 @@ pub trait MethodVisitor<T: Scalar, const D: usize = 1> {
     /// What comes out of it.
     type Output;
 
+    /// Whether [`Taylor`] lends virtual points ([`Taylor::with_virtual_points`]) along one axis.
+    fn lends_virtual_points(&self) -> bool {
+        false
+    }
+
     /// Called with an instance of either type.
     fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
     where
@@ -131,7 +136,11 @@ impl KnownIn<1> for ReconstructionKind {
         let degree = basis.degree();
         Some(match self {
             Self::Shepard => visitor.visit(basis, Shepard),
-            Self::Taylor => visitor.visit(basis, Taylor::<T, 1, 3>::for_degree(degree)),
+            Self::Taylor => {
+                let taylor = Taylor::<T, 1, 3>::for_degree(degree);
+                let taylor = taylor.with_virtual_points(visitor.lends_virtual_points());
+                visitor.visit(basis, taylor)
+            }
             Self::RelaxedTaylor => {
                 let taylor = RelaxedTaylor::<T, 1, 3>::for_basis(&basis);
                 visitor.visit(basis, taylor)

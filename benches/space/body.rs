@@ -3,7 +3,7 @@
 use materialpoint::basis::BSpline;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::ConstitutiveLaw;
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::Reconstruction;
@@ -102,7 +102,7 @@ impl Body {
             OnePhase,
             particles,
         )
-        .with_velocity_mass(mass);
+        .with_velocity_mass(MassModel::preferring(mass));
         Box::new(Stepper::new(setup).expect("a valid setup"))
     }
 }

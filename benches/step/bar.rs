@@ -3,7 +3,7 @@
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Method, MethodVisitor};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
@@ -60,7 +60,7 @@ impl<T: Scalar> MethodVisitor<T> for Layout {
         let moduli = Moduli::uniaxial(T::lit(MODULUS)).expect("a positive modulus");
         let stepper = Stepper::new(
             Setup::new(grid, basis, reconstruction, Hill { moduli }, OnePhase, particles)
-                .with_velocity_mass(VelocityMass::Consistent),
+                .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
         );
         Box::new(stepper.expect("a valid setup"))
     }

@@ -1,8 +1,9 @@
 //! Shepard: the mapping of the plain material point method.
 
-use super::{Cloud, Point, Reconstruction};
+use super::{AtParticles, Cloud, NoFilter, Point, Reconstruction};
 use crate::basis::BasisFamily;
 use crate::field::Field;
+use crate::mass::ParticleMass;
 use crate::scalar::Scalar;
 
 /// Streams the particles themselves with their volumes as weights: plain MPM (Sulsky, Chen & Schreyer
@@ -18,9 +19,9 @@ impl Shepard {
 }
 
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
-    const FIELDS_AT_PARTICLES: bool = true;
-    const AMOUNTS_AT_PARTICLES: bool = true;
-    const PLAIN: bool = true;
+    type Points = AtParticles;
+    type Mass = ParticleMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, T, D>) {}
 
@@ -33,18 +34,6 @@ impl<T: Scalar, const D: usize> Reconstruction<T, D> for Shepard {
     ) {
         for p in 0..cloud.positions.len() {
             sink(&Point::of_particle(cloud, p), value(p).scaled(cloud.volumes[p]));
-        }
-    }
-
-    #[inline(always)]
-    fn integrate_conserved<Q: Field<T>>(
-        &mut self,
-        cloud: &Cloud<'_, T, D>,
-        amount: impl Fn(usize) -> Q,
-        mut sink: impl FnMut(&Point<T, D>, Q),
-    ) {
-        for p in 0..cloud.positions.len() {
-            sink(&Point::of_particle(cloud, p), amount(p));
         }
     }
 }

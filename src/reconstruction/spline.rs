@@ -2,9 +2,10 @@
 
 use nalgebra::SVector;
 
-use super::{Cloud, Point, Reconstruction};
+use super::{Anywhere, Cloud, NoFilter, Point, Reconstruction};
 use crate::basis::BasisFamily;
 use crate::field::Field;
+use crate::mass::VelocityMass;
 use crate::quadrature::gauss_legendre;
 use crate::scalar::Scalar;
 
@@ -316,8 +317,9 @@ impl<T: Scalar> CubicSpline<T> {
 }
 
 impl<T: Scalar> Reconstruction<T, 1> for CubicSpline<T> {
-    const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = false;
+    type Points = Anywhere;
+    type Mass = VelocityMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, 1>) {
         self.sort(cloud.positions);

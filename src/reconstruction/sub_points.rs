@@ -2,22 +2,23 @@
 
 use nalgebra::SVector;
 
-use super::{Cloud, Point, Reconstruction, Shepard};
+use super::{Anywhere, Cloud, NoFilter, Point, Reconstruction};
 use crate::basis::tensor::advance;
 use crate::error::SetupError;
 use crate::field::Field;
 use crate::grid::{Cell, Grid};
+use crate::mass::ParticleMass;
 use crate::scalar::Scalar;
 
 /// Streams a field at `S` sub-points per axis of each particle's current domain, each with the weight
-/// `V_p / S^D`, and the amounts (mass, momentum) at the particles as [`Shepard`] does: the dual domain method
-/// with sub-points of Dhakal & Zhang (J. Comput. Phys. 325, 2016; journal Table 8), made for
-/// [`DualDomain`](crate::basis::DualDomain) and usable with any family.
+/// `V_p / S^D`, and the amounts (mass, momentum) at the particles as [`Shepard`](super::Shepard) does: the
+/// dual domain method with sub-points of Dhakal & Zhang (J. Comput. Phys. 325, 2016; journal Table 8), made
+/// for [`DualDomain`](crate::basis::DualDomain) and usable with any family.
 ///
 /// * **Domain.** A box of volume `V_p` around the particle, in the shape of a cell: in 1-D
 ///   `[x_p - V_p/2, x_p + V_p/2]`. It grows and shrinks with the volume and does not turn or shear.
 /// * **Sub-points.** The midpoints of `S` equal parts of the box along each axis, so that one sub-point is
-///   the particle, to the bit [`Shepard`]. The field is constant over the domain.
+///   the particle, to the bit [`Shepard`](super::Shepard). The field is constant over the domain.
 /// * **Gradients.** The family's gradients for moving points ([`Point::moves`]), since sub-points cross cell
 ///   edges.
 /// * **Where there is no material.** A sub-point outside the grid (beyond a wall), or in a cell that holds no
@@ -107,8 +108,9 @@ fn holds_particles<T: Scalar, const D: usize>(cloud: &Cloud<'_, T, D>, cell: &Ce
 }
 
 impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {
-    const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = true;
+    type Points = Anywhere;
+    type Mass = ParticleMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, _cloud: &Cloud<'_, T, D>) {}
 
@@ -150,16 +152,6 @@ impl<T: Scalar, const D: usize> Reconstruction<T, D> for SubPoints {
                 }
             }
         }
-    }
-
-    #[inline(always)]
-    fn integrate_conserved<Q: Field<T>>(
-        &mut self,
-        cloud: &Cloud<'_, T, D>,
-        amount: impl Fn(usize) -> Q,
-        sink: impl FnMut(&Point<T, D>, Q),
-    ) {
-        Shepard.integrate_conserved(cloud, amount, sink);
     }
 }
 

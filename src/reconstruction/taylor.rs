@@ -15,10 +15,13 @@ use cell_group::{Conserved, ConservedValues, Free};
 use virtual_points::Lent;
 
 use super::gauss::GaussRule;
-use super::{BatchStatus, Cloud, Kept, Patch, Point, Reconstruction, Values};
+use super::{
+    BatchStatus, CellStream, Cloud, FourCells, InFours, Kept, NoFilter, Patch, Point, Reconstruction, Values,
+};
 use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::grid::Cell;
+use crate::mass::VelocityMass;
 use crate::parallel::{self, each_span};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, each};
@@ -204,6 +207,13 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         self
     }
 
+    /// Cells in which the last [`Reconstruction::integrate_conserved`] had to keep a density positive
+    /// ([`Field::DENSITIES`]), and drew all that it streamed towards its mean. What belongs to those
+    /// densities must be streamed together with them there.
+    pub fn limited_cells(&self) -> usize {
+        self.limited
+    }
+
     /// Coefficients of the conserved fit in every occupied cell, ascending, from the amounts (the fit's mean
     /// is the cell's sum of amounts over its volume).
     pub fn conserved_coefficients<Q: Field<T>>(
@@ -333,7 +343,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         fit_about_mean(cell.fits, cloud, cell.number, value, mean)
     }
 
-    /// [`Reconstruction::integrate_batch`] of a field of not more than `C` components.
+    /// [`FourCells::integrate_batch`] of a field of not more than `C` components.
     #[inline(always)]
     fn integrate_few<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
@@ -352,7 +362,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         four
     }
 
-    /// [`Reconstruction::fit_batch`] likewise.
+    /// [`FourCells::fit_batch`] likewise.
     #[inline(always)]
     fn fit_few<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
@@ -649,9 +659,9 @@ fn fit_about_mean<T: Scalar, const D: usize, const NB: usize, Q: Field<T>>(
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor<T, D, NB> {
-    const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = false;
-    const CELLWISE: bool = true;
+    type Points = InFours;
+    type Mass = VelocityMass;
+    type Filter = NoFilter;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
         // One slot for each cell there is, so that a later step never has to allocate.
@@ -699,6 +709,20 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         self.limited = self.stream_conserved(cloud, 0..self.cells.len(), &amount, sink);
     }
 
+    fn reduced_cells(&self) -> usize {
+        self.reduced
+    }
+
+    fn virtual_cells(&self) -> usize {
+        self.lent
+    }
+
+    fn bytes(&self) -> usize {
+        self.cells.capacity() * size_of::<CellFits<T, D, NB>>()
+    }
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> CellStream<T, D> for Taylor<T, D, NB> {
     #[inline(always)]
     fn integrate_cells<Q: Field<T>>(
         &self,
@@ -723,8 +747,9 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
     ) {
         self.stream_conserved(cloud, cells, &amount, sink);
     }
+}
 
-    const BATCHED: bool = true;
+impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for Taylor<T, D, NB> {
     const KEPT: usize = kept::<NB>();
 
     fn line(&self) -> impl Iterator<Item = T> {
@@ -756,8 +781,6 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
             sink
         ))
     }
-
-    const FITS_TAYLOR: bool = true;
 
     fn weighted_line(&self) -> impl Iterator<Item = (T, T)> {
         self.rule.weighted_line()
@@ -798,25 +821,5 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         self.rule
             .emit(&fits.patch, &coefficients, &mut |point, value| sink(point, value));
         full
-    }
-
-    fn reduced_cells(&self) -> usize {
-        self.reduced
-    }
-
-    fn virtual_cells(&self) -> usize {
-        self.lent
-    }
-
-    fn limited_cells(&self) -> usize {
-        self.limited
-    }
-
-    fn lend_virtual_points(&mut self, lent: bool) {
-        self.virtual_points = lent;
-    }
-
-    fn bytes(&self) -> usize {
-        self.cells.capacity() * size_of::<CellFits<T, D, NB>>()
     }
 }

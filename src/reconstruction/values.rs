@@ -23,7 +23,6 @@ pub trait Values<T: Scalar, Q: Field<T>> {
     }
 
     /// The same of any four particles.
-    #[doc(hidden)]
     #[inline(always)]
     fn lanes<K: Packs<T>, const C: usize>(&self, k: K, particles: &[usize; LANES]) -> [K::V; C] {
         lanes_of(

@@ -3,10 +3,11 @@
 use nalgebra::SVector;
 
 use super::balance::Balance;
-use super::dofs::{Dofs, MassModel};
+use super::dofs::Dofs;
 use super::matrix::Unknown;
 use super::{FaceCondition, Forcing, PoreCondition};
 use crate::grid::Face;
+use crate::mass::Divisor;
 use crate::scalar::Scalar;
 use crate::simd::with_features;
 
@@ -15,12 +16,12 @@ use crate::simd::with_features;
 #[inline(never)]
 pub(super) fn accelerate<T: Scalar, const D: usize>(
     dofs: &mut Dofs<T, D>,
-    mass: MassModel,
+    mass: Divisor,
     walls: &Walls<'_, T, D>,
     balance: &mut Balance<T, D>,
 ) {
     let body_force = walls.forcing.body_force;
-    if mass == MassModel::ParticleMatrix {
+    if mass == Divisor::ParticleMatrix {
         for (force, &mass) in dofs.force.iter_mut().zip(&dofs.mass) {
             *force += body_force * mass;
         }
@@ -35,7 +36,7 @@ pub(super) fn accelerate<T: Scalar, const D: usize>(
             move || divide_by_masses(forces, masses, body_force),
         );
     }
-    let is_lumped = mass != MassModel::ParticleMatrix;
+    let is_lumped = mass != Divisor::ParticleMatrix;
     // One after another: where faces meet, the later one finds what the earlier one has prescribed.
     walls.for_each_held(|dof, axis, _, acceleration| {
         let force = &mut dofs.force[dof][axis];

@@ -13,7 +13,7 @@ use crate::grid::{Cell, Face, Grid};
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, each_span, many_threads};
 use crate::phase::Phase;
-use crate::reconstruction::{Reconstruction, Stresses};
+use crate::reconstruction::{Reconstruction, Streams, Stresses};
 use crate::scalar::Scalar;
 use crate::transfer::Transfer;
 
@@ -120,7 +120,7 @@ where
         if const { X::FROM_GRID } {
             return None;
         }
-        if R::PLAIN {
+        if R::Points::AT_PARTICLES {
             return Some(self.stiffness_bound(forcing));
         }
         let waves = self.stiffness_of_sample(forcing);

@@ -7,50 +7,8 @@ use super::velocity::sum;
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
 use crate::grid::Grid;
-use crate::mass::VelocityMass;
-use crate::reconstruction::Reconstruction;
+use crate::mass::Divisor;
 use crate::scalar::Scalar;
-
-/// What forces and momenta of DOFs are divided by. Forces are by the particles' lumped masses but for
-/// [`MassModel::ParticleMatrix`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum MassModel {
-    /// Lumped masses of the particles.
-    Particles,
-    /// Row sums of fitted masses.
-    FittedLumped,
-    /// The consistent matrix of fitted masses; held DOFs are overwritten or, if told so, eliminated.
-    FittedMatrix { constrained: bool },
-    /// The particles' consistent matrix, held DOFs eliminated: overwritten walls would tear at an
-    /// acceleration that knows nothing of them.
-    ParticleMatrix,
-}
-
-impl MassModel {
-    /// That of a reconstruction, with what the setup says of the mass behind DOF velocities.
-    pub(super) fn of<T: Scalar, const D: usize, R: Reconstruction<T, D>>(told: VelocityMass) -> Self {
-        match (R::PARTICLE_MATRIX, R::AMOUNTS_AT_PARTICLES, told) {
-            (true, _, _) => Self::ParticleMatrix,
-            (false, true, _) => Self::Particles,
-            (false, false, VelocityMass::Lumped) => Self::FittedLumped,
-            (false, false, VelocityMass::Consistent) => Self::FittedMatrix { constrained: false },
-            (false, false, VelocityMass::Constrained) => Self::FittedMatrix { constrained: true },
-        }
-    }
-
-    /// Whether there is a matrix.
-    pub(super) fn has_matrix(self) -> bool {
-        matches!(self, Self::FittedMatrix { .. } | Self::ParticleMatrix)
-    }
-
-    /// Whether held DOFs are eliminated from the matrix.
-    pub(super) fn is_constrained(self) -> bool {
-        matches!(
-            self,
-            Self::FittedMatrix { constrained: true } | Self::ParticleMatrix
-        )
-    }
-}
 
 /// Data of the DOFs, allocated once for each window.
 #[derive(Clone, Debug)]
@@ -81,9 +39,9 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
 
     /// Of the DOFs of `basis`, with what `mass` wants.
     #[inline(never)]
-    pub(super) fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>, mass: MassModel) -> Self {
+    pub(super) fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>, mass: Divisor) -> Self {
         let count = basis.dof_count(grid);
-        let lumped = if mass == MassModel::FittedLumped { count } else { 0 };
+        let lumped = if mass == Divisor::FittedLumped { count } else { 0 };
         Self {
             mass: vec![T::zero(); count],
             force: vec![SVector::zeros(); count],
@@ -91,7 +49,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             lumped: vec![T::zero(); lumped],
             matrix: match mass.has_matrix() {
                 // Weak DOFs are tied to others.
-                true => MassMatrix::new(basis, grid, mass == MassModel::ParticleMatrix),
+                true => MassMatrix::new(basis, grid, mass == Divisor::ParticleMatrix),
                 false => MassMatrix::none(),
             },
         }
@@ -99,12 +57,12 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
 
     /// Total of the mass that divides momenta, and total momentum.
     #[inline(never)]
-    pub(super) fn mapped_totals(&self, mass: MassModel) -> MassMomentum<T, D> {
+    pub(super) fn mapped_totals(&self, mass: Divisor) -> MassMomentum<T, D> {
         MassMomentum {
             mass: match mass {
-                MassModel::Particles => sum(&self.mass),
-                MassModel::FittedLumped => sum(&self.lumped),
-                MassModel::FittedMatrix { .. } | MassModel::ParticleMatrix => self.matrix.total(),
+                Divisor::Particles => sum(&self.mass),
+                Divisor::FittedLumped => sum(&self.lumped),
+                Divisor::FittedMatrix { .. } | Divisor::ParticleMatrix => self.matrix.total(),
             },
             momentum: sum(&self.velocity),
         }

@@ -15,7 +15,7 @@ use crate::mass::banded_row;
 use crate::parallel::{Groups, PerSpan, Windows, add_up, each_span};
 use crate::particles::{DomainViews, Particles};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Values};
+use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Streams, Values};
 use crate::scalar::Scalar;
 use crate::simd::LANES;
 use crate::transfer::{
@@ -58,7 +58,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
     ) where
         Stress: Integrand<T, D, 0, 0, G, 0>,
     {
-        self.reconstruction.fit_field(&self.cloud, &stress);
+        R::Points::take_in_field(self.reconstruction, &self.cloud, &stress);
         self.integrate::<Stress, 0, 0, G>(&stress, targets);
     }
 
@@ -86,7 +86,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
     {
         let (basis, cloud, domains) = (self.basis, &self.cloud, self.domains);
         let amount = |p: usize| amount_of(value.at(p), I::CONSERVED, cloud.volumes[p]);
-        if !R::CELLWISE {
+        if !R::Points::IN_CELLS {
             let mut sums = InSpan::whole(targets);
             let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, |dof, sum| sums.add(dof, sum));
             return match I::CONSERVED {
@@ -142,8 +142,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             }
             let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, |dof, sum| sums.add(dof, sum));
             match I::CONSERVED {
-                true => reconstruction.integrate_conserved_cells(cloud, cells, amount, sink),
-                false => reconstruction.integrate_cells(cloud, cells, amount, sink),
+                true => R::Points::conserved_cells(reconstruction, cloud, cells, amount, sink),
+                false => R::Points::cells(reconstruction, cloud, cells, amount, sink),
             }
         });
         store.add_up(spans, &mut targets);
@@ -193,7 +193,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             forces: [],
         };
         let mut targets: Targets<'_, T, D, 0, C, 0> = targets;
-        if !R::CELLWISE {
+        if !R::Points::IN_CELLS {
             rows.iter_mut().for_each(|rows| rows.fill(T::zero()));
             let mut sums = InSpan::whole(targets);
             let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(
@@ -261,7 +261,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                 return;
             }
             let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, sink, matrix);
-            reconstruction.integrate_conserved_cells(cloud, cells, amount, sink);
+            R::Points::conserved_cells(reconstruction, cloud, cells, amount, sink);
         });
         for (store, rows) in matrices.iter().zip(&mut rows) {
             add_up(spans, store, rows, width);
@@ -333,10 +333,10 @@ fn room<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
 ) -> Groups<'_, [T; LANES]> {
     let groups = if batched { cells.div_ceil(LANES) } else { 0 };
     // What was kept stays where the cells are the same.
-    kept.resize(groups * R::KEPT, [T::zero(); LANES]);
+    kept.resize(groups * R::Points::KEPT, [T::zero(); LANES]);
     Groups {
         values: kept,
-        sizes: [LANES, R::KEPT],
+        sizes: [LANES, R::Points::KEPT],
     }
 }
 

@@ -18,9 +18,10 @@ use crate::basis::BasisFamily;
 use crate::error::{SetupError, StepError};
 use crate::grid::{Face, Grid};
 use crate::law::LawSweep;
+use crate::mass::MassModel;
 use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
 use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
+use crate::reconstruction::{Filters, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::{Packs, each};
 use crate::transfer::{
@@ -364,9 +365,9 @@ where
 {
     let reason = if P::FLOWS {
         "one phase: a liquid that flows has velocities of its own"
-    } else if R::RELAXES || R::PARTICLE_MATRIX {
+    } else if R::Filter::FILTERS || R::Mass::IN_ACCELERATION {
         "lumped masses and a velocity that nothing relaxes"
-    } else if !R::AMOUNTS_AT_PARTICLES {
+    } else if !R::Mass::OF_PARTICLES {
         "masses that are sums over the particles: these would not take back what a fit changed"
     } else {
         return Ok(());

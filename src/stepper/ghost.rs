@@ -7,7 +7,7 @@ use crate::grid::Grid;
 use crate::law::LawSweep;
 use crate::particles::{Bins, Particles};
 use crate::phase::Phase;
-use crate::reconstruction::{Filling, Reconstruction};
+use crate::reconstruction::{Filling, Filters, Reconstruction};
 use crate::scalar::Scalar;
 use crate::transfer::Transfer;
 
@@ -29,7 +29,7 @@ where
     /// full, beyond one dimension.
     pub(super) fn tie_partly_filled_cells(&mut self) {
         let (grid, bins, reconstruction) = (&self.grid, &self.bins, &self.reconstruction);
-        let is_full = |place: usize| reconstruction.filling(place) == Filling::Filled;
+        let is_full = |place: usize| R::Filter::filling(reconstruction, place) == Filling::Filled;
         let full_mass = |place: usize| density(&self.particles, bins, place) * grid.cell_volume();
         let share = share::<T, D>(self.basis.degree());
         for place in 0..bins.occupied().len() {
@@ -58,7 +58,9 @@ pub(super) fn lump_undetermined_cells<T, const D: usize, B, R>(
     R: Reconstruction<T, D>,
 {
     let occupied = bins.occupied().iter().enumerate();
-    for (_, &number) in occupied.filter(|&(place, _)| reconstruction.filling(place) == Filling::Isolated) {
+    for (_, &number) in
+        occupied.filter(|&(place, _)| R::Filter::filling(reconstruction, place) == Filling::Isolated)
+    {
         let cell = grid.cell(number as usize);
         let x = grid.centre(&cell);
         basis.for_each_at_fixed_point(grid, &cell, &x, |dof, _, _| matrix.lump(dof));

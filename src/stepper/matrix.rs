@@ -3,10 +3,10 @@
 use nalgebra::SVector;
 
 use super::acceleration::Walls;
-use super::dofs::{Dofs, MassModel};
+use super::dofs::Dofs;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
-use crate::mass::{Banded, ConjugateGradients, Lattice, Penalty};
+use crate::mass::{Banded, ConjugateGradients, Divisor, Lattice, Penalty};
 use crate::scalar::Scalar;
 
 /// What is solved for, in place.
@@ -150,7 +150,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
     pub(super) fn solve(
         &mut self,
         unknown: Unknown,
-        mass: MassModel,
+        mass: Divisor,
         walls: &Walls<'_, T, D>,
         fresh: bool,
         pick: &dyn Fn(T, T) -> T,
@@ -194,7 +194,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
     fn iterate(
         &mut self,
         unknown: Unknown,
-        mass: MassModel,
+        mass: Divisor,
         walls: &Walls<'_, T, D>,
         pick: &dyn Fn(T, T) -> T,
     ) {

@@ -76,15 +76,15 @@ use crate::basis::{BasisFamily, FixedPoints};
 use crate::error::{SetupError, StepError};
 use crate::grid::{Cell, Grid};
 use crate::law::LawSweep;
-use crate::mass::VelocityMass;
+use crate::mass::{Divides, Divisor, MassModel};
 use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, CourantNumbers, Cut, Reconstruction};
+use crate::reconstruction::{Cloud, CourantNumbers, Cut, Filters, Reconstruction, Streams};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, packs_serve};
 use crate::transfer::{self, DofPlaces, Flip, Transfer};
-use dofs::{Dofs, MassModel};
+use dofs::Dofs;
 use order::Order;
 use pairs::Pairs;
 use spans::{SCALARS, Spans, VECTORS};
@@ -94,6 +94,7 @@ use spans::{SCALARS, Spans, VECTORS};
 pub struct Stepper<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>, X: Transfer<T, D> = Flip>
 where
     T: Scalar,
+    R: Reconstruction<T, D>,
 {
     grid: Grid<T, D>,
     basis: B,
@@ -142,8 +143,8 @@ where
     /// Of each a DOF that has a value there and is not among them.
     left_out: Vec<Option<usize>>,
     /// As the setup said it.
-    velocity_mass: VelocityMass,
-    mass: MassModel,
+    velocity_mass: R::Mass,
+    mass: Divisor,
     time: T,
     steps: usize,
     diagnostics: Diagnostics<T>,
@@ -164,7 +165,7 @@ where
     /// If particle data are inconsistent or not finite or a stress unknown to the law, a particle is outside
     /// the grid or larger than the basis allows ([`Domain`](crate::basis::Domain)), a constant of the phase
     /// makes no sense, or beyond one axis the reconstruction is of one phase only or wants a basis that is
-    /// one polynomial of its degree in each cell ([`Reconstruction::PARTICLE_MATRIX`]).
+    /// one polynomial of its degree in each cell ([`ParticleMatrix`](crate::mass::ParticleMatrix)).
     pub fn new(setup: Setup<T, D, B, R, L, P, X>) -> Result<Self, SetupError> {
         const {
             crate::basis::constants_agree::<T, D, B>();
@@ -188,7 +189,7 @@ where
         diffusion::refuse_without_capacity(&phase, &particles, |p| p)?;
         domain::lay::<T, D, B, _, _>(&grid, &mut particles);
         domain::validate::<T, D, B, _, _>(&grid, &particles, |p| p)?;
-        if P::FLOWS && R::PARTICLE_MATRIX && D > 1 {
+        if P::FLOWS && R::Mass::IN_ACCELERATION && D > 1 {
             return Err(SetupError::OnePhaseOnly);
         }
         from_grid::refuse_what_it_cannot::<T, D, R, P, X>()?;
@@ -204,7 +205,7 @@ where
                 expected,
             });
         }
-        if R::PARTICLE_MATRIX && D > 1 {
+        if R::Mass::IN_ACCELERATION && D > 1 {
             polynomial::refuse_bends_within_cells(&basis, &grid)?;
         }
         let bins = find_cells(&grid, &surface, &mut particles.position)?;
@@ -220,14 +221,14 @@ where
             &particles.mass,
             Counts {
                 surface: surface.len(),
-                crossed: if R::RELAXES { grid.cell_count() } else { 0 },
-                relaxed: match R::RELAXES && law.remembers() {
+                crossed: if R::Filter::FILTERS { grid.cell_count() } else { 0 },
+                relaxed: match R::Filter::FILTERS && law.remembers() {
                     true => particles.len(),
                     false => 0,
                 },
                 functions: [along, along.pow(D as u32 - 1)],
                 flows: P::FLOWS,
-                pairs: R::PARTICLE_MATRIX,
+                pairs: R::Mass::IN_ACCELERATION,
             },
         );
         let mut stepper = Self {
@@ -261,13 +262,13 @@ where
             face_dofs: Vec::new(),
             left_out: Vec::new(),
             velocity_mass,
-            mass: MassModel::of::<T, D, R>(velocity_mass),
+            mass: velocity_mass.divisor(),
             time: T::zero(),
             steps: 0,
             diagnostics: parts.diagnostics,
         };
         if P::FLOWS {
-            stepper.reconstruction.configure_for_saturated();
+            R::Filter::suit_liquid(&mut stepper.reconstruction);
         }
         stepper.allocate_dofs();
         stepper.allocate();
@@ -283,7 +284,7 @@ where
             self.liquid = Dofs::new(basis, grid, self.mass);
             let count = basis.dof_count(grid);
             self.drag = vec![T::zero(); count];
-            if R::PARTICLE_MATRIX {
+            if R::Mass::IN_ACCELERATION {
                 self.joint = liquid::Joint::new(basis, grid, self.particles.len());
             }
         }
@@ -306,12 +307,13 @@ where
             (false, true) => [diffusion::SCALARS, 1],
             (false, false) => [1, 1],
         };
-        self.spans.allocate(each, R::CELLWISE, dofs);
+        self.spans.allocate(each, R::Points::IN_CELLS, dofs);
         if self.batched() {
             let cells = self.particles.len().min(self.grid.cell_count());
-            self.spans.kept.reserve_exact(cells.div_ceil(LANES) * R::KEPT);
+            let numbers = cells.div_ceil(LANES) * R::Points::KEPT;
+            self.spans.kept.reserve_exact(numbers);
         }
-        if R::AMOUNTS_AT_PARTICLES {
+        if R::Mass::OF_PARTICLES {
             return;
         }
         if P::FLOWS {
@@ -392,7 +394,10 @@ where
 
     /// Whether a step is worth being sent to a pool of threads.
     fn is_worth_sending(&self) -> bool {
-        let cells = if R::PLAIN { 0 } else { self.bins.occupied().len() };
+        let cells = match R::Points::AT_PARTICLES {
+            true => 0,
+            false => self.bins.occupied().len(),
+        };
         are_many::<D>(self.particles.len(), PARTICLES) || are_many::<D>(cells, CELLS)
     }
 
@@ -406,7 +411,7 @@ where
         if self.order.is_lost() {
             self.restore_order();
         }
-        let fits = !R::PLAIN;
+        let fits = !R::Points::AT_PARTICLES;
         if fits || B::TAKES_IN_CELLS {
             self.bins.list(&self.grid);
         }
@@ -417,7 +422,7 @@ where
         if fits {
             self.cut_cells();
         }
-        if self.batched() && !R::NON_LOCAL {
+        if self.batched() && !R::Points::NON_LOCAL {
             return;
         }
         let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
@@ -433,7 +438,7 @@ where
         let can = const { transfer::fit::<T, D, B, R>() };
         can && self.is_wide_enough()
             && packs_serve::<T>()
-            && (1..=transfer::MOST_POINTS).contains(&self.reconstruction.line().count())
+            && (1..=transfer::MOST_POINTS).contains(&R::Points::line(&self.reconstruction).count())
     }
 
     /// Whether the functions that fits are integrated with all are of DOFs that there are: a stencil may be

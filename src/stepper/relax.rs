@@ -1,4 +1,4 @@
-//! The reconstruction's touch on the particles.
+//! The filter of the particles' stress and velocity.
 
 use nalgebra::SMatrix;
 
@@ -7,7 +7,7 @@ use crate::basis::BasisFamily;
 use crate::law::{Bodies, LawSweep};
 use crate::parallel::{CELLS, each_span, many_threads};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, CourantNumbers, Reconstruction};
+use crate::reconstruction::{Cloud, CourantNumbers, Filters, Reconstruction};
 use crate::scalar::Scalar;
 use crate::simd::with_features;
 use crate::tensor::determinant;
@@ -27,7 +27,7 @@ where
     P: Phase<T, D>,
     X: Transfer<T, D>,
 {
-    /// The reconstruction's touch on the particles: the stress after the force is assembled from it (nothing
+    /// Filters the particles: the stress after the force is assembled from it (nothing
     /// has used it since), the velocity after its update and before it is mapped.
     pub(super) fn relax(&mut self, dt: T) {
         self.measure_courant_numbers(dt);
@@ -40,16 +40,25 @@ where
             cuts: &self.cuts,
         };
         if !self.law.remembers() {
-            self.reconstruction
-                .relax(&cloud, None, crossed, &mut particles.stress);
+            R::Filter::relax(
+                &mut self.reconstruction,
+                &cloud,
+                None,
+                crossed,
+                &mut particles.stress,
+            );
         } else {
             self.relaxed.copy_from_slice(&particles.stress);
-            self.reconstruction
-                .relax(&cloud, None, crossed, &mut self.relaxed);
+            R::Filter::relax(&mut self.reconstruction, &cloud, None, crossed, &mut self.relaxed);
         }
         let mass = Some(&particles.mass[..]);
-        self.reconstruction
-            .relax(&cloud, mass, crossed, &mut particles.velocity);
+        R::Filter::relax(
+            &mut self.reconstruction,
+            &cloud,
+            mass,
+            crossed,
+            &mut particles.velocity,
+        );
         if self.law.remembers() {
             self.strain_to_relaxed();
         }

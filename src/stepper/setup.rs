@@ -3,9 +3,9 @@
 use super::SurfacePoint;
 use crate::grid::Grid;
 use crate::law::LawSweep;
-use crate::mass::VelocityMass;
 use crate::particles::Particles;
 use crate::phase::Phase;
+use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::transfer::{Flip, Transfer};
 
@@ -16,6 +16,7 @@ use crate::transfer::{Flip, Transfer};
 pub struct Setup<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>, X: Transfer<T, D> = Flip>
 where
     T: Scalar,
+    R: Reconstruction<T, D>,
 {
     /// Background grid.
     pub grid: Grid<T, D>,
@@ -29,9 +30,8 @@ where
     pub phase: P,
     /// How velocities reach the grid and come back.
     pub transfer: X,
-    /// Mass behind the DOF velocities; [`crate::reconstruction::Shepard`] lumps always and
-    /// [`crate::reconstruction::RelaxedTaylor`] constrains always.
-    pub velocity_mass: VelocityMass,
+    /// Mass behind the DOF velocities, one of those that the reconstruction has.
+    pub velocity_mass: R::Mass,
     /// Particles in their initial state.
     pub particles: Particles<T, D, L::Number, P::Particle>,
     /// What the transfer remembers of each particle; empty if nothing yet.
@@ -45,6 +45,7 @@ where
 impl<T, const D: usize, B, R, L, P> Setup<T, D, B, R, L, P>
 where
     T: Scalar,
+    R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
 {
@@ -64,7 +65,7 @@ where
             law,
             phase,
             transfer: Flip,
-            velocity_mass: VelocityMass::Lumped,
+            velocity_mass: R::Mass::default(),
             particles,
             memory: Vec::new(),
             surface: Vec::new(),
@@ -75,13 +76,34 @@ where
 impl<T, const D: usize, B, R, L, P, X> Setup<T, D, B, R, L, P, X>
 where
     T: Scalar,
+    R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
     X: Transfer<T, D>,
 {
-    /// With another mass behind the DOF velocities.
+    /// With another mass behind the DOF velocities, where the reconstruction has a choice: a
+    /// [`VelocityMass`](crate::mass::VelocityMass) for fits of the density. One that it does not have does
+    /// not compile:
+    ///
+    /// ```compile_fail,E0308
+    /// use materialpoint::basis::Linear;
+    /// use materialpoint::grid::Grid;
+    /// use materialpoint::law::{LinearElastic, Moduli};
+    /// use materialpoint::mass::VelocityMass;
+    /// use materialpoint::particles::{Particles, lattice};
+    /// use materialpoint::phase::OnePhase;
+    /// use materialpoint::reconstruction::Shepard; // lumps always
+    /// use materialpoint::stepper::Setup;
+    /// use nalgebra::vector;
+    ///
+    /// let grid = Grid::new(vector![0.0], vector![1.0], [4]).unwrap();
+    /// let particles = Particles::at_rest(&lattice(&grid, grid.min(), grid.max(), [2]), 1.0);
+    /// let law = LinearElastic { moduli: Moduli::uniaxial(1.0).unwrap() };
+    /// Setup::new(grid, Linear, Shepard, law, OnePhase, particles)
+    ///     .with_velocity_mass(VelocityMass::Consistent);
+    /// ```
     #[must_use]
-    pub fn with_velocity_mass(self, velocity_mass: VelocityMass) -> Self {
+    pub fn with_velocity_mass(self, velocity_mass: R::Mass) -> Self {
         Self {
             velocity_mass,
             ..self

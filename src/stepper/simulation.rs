@@ -15,7 +15,7 @@ use crate::grid::Face;
 use crate::law::LawSweep;
 use crate::particles::Particles;
 use crate::phase::{Phase, PoreLiquid};
-use crate::reconstruction::Reconstruction;
+use crate::reconstruction::{Reconstruction, Streams};
 use crate::record::Record;
 use crate::scalar::Scalar;
 use crate::transfer::Transfer;
@@ -212,7 +212,7 @@ where
     }
 
     fn stiffness_is_bound(&self) -> bool {
-        R::PLAIN && !X::FROM_GRID
+        R::Points::AT_PARTICLES && !X::FROM_GRID
     }
 
     fn largest_step(&self, stiffness: f64) -> Option<CriticalStep<f64>> {

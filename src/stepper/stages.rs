@@ -2,7 +2,6 @@
 //! (`diffusion`, `contact`). The list is in `step`.
 
 use super::acceleration::{Walls, accelerate};
-use super::dofs::MassModel;
 use super::drift::{Matter, move_particles};
 use super::fitted::{DensitiesOfBoth, Fitted, StressAndPressure, densities};
 use super::forcing::Forcing;
@@ -16,8 +15,9 @@ use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::field::{MassMomentum, Symmetric};
 use crate::law::LawSweep;
+use crate::mass::{Divisor, MassModel};
 use crate::phase::Phase;
-use crate::reconstruction::{Reconstruction, Stresses};
+use crate::reconstruction::{Filters, Reconstruction, Streams, Stresses};
 use crate::scalar::Scalar;
 use crate::transfer::Drift;
 use crate::transfer::Transfer;
@@ -98,17 +98,17 @@ where
         if const { P::FLOWS } {
             self.find_seals(forcing);
         }
-        match const { (R::PLAIN, P::FLOWS, R::AMOUNTS_AT_PARTICLES) } {
+        match const { (R::Points::AT_PARTICLES, P::FLOWS, R::Mass::OF_PARTICLES) } {
             (true, false, _) => self.sum::<1, 0, 1>(even),
             (true, true, _) => self.sum::<3, 2, 2>(even),
             (false, false, _) => self.sum::<1, 0, 0>(even),
             (false, true, false) => self.sum::<3, 0, 0>(even),
             (false, true, true) => self.sum::<3, 2, 0>(even),
         }
-        if const { R::PARTICLE_MATRIX } {
+        if const { R::Mass::IN_ACCELERATION } {
             self.assemble_matrices();
         }
-        if const { !R::PLAIN } {
+        if const { !R::Points::AT_PARTICLES } {
             self.integrate_forces(even);
         }
         if const { P::FLOWS } {
@@ -176,7 +176,7 @@ where
                 Targets::<T, D, 0, 0, 1>::of_forces(first(forces)),
             );
         }
-        if batched && !R::NON_LOCAL {
+        if batched && !R::Points::NON_LOCAL {
             let reduced = self.spans.reduced.iter().sum();
             self.diagnostics.record_reduced(reduced);
         }
@@ -208,7 +208,7 @@ where
     /// Velocities of the particles, and the momenta of the DOFs where those of the particles are simply
     /// summed.
     pub(super) fn kick_particles(&mut self, dt: T) -> Totals<T, D> {
-        match const { (P::FLOWS, R::AMOUNTS_AT_PARTICLES && !R::RELAXES) } {
+        match const { (P::FLOWS, R::Mass::OF_PARTICLES && !R::Filter::FILTERS) } {
             (false, false) => self.kick_phases::<1, 0>(dt),
             (false, true) => self.kick_phases::<1, 1>(dt),
             (true, false) => self.kick_phases::<2, 0>(dt),
@@ -230,18 +230,18 @@ where
         )
     }
 
-    /// The reconstruction's touch on the particles.
+    /// Takes from the particles what no fit sees.
     pub(super) fn filter(&mut self, dt: T) {
-        if const { R::RELAXES && P::FLOWS } {
+        if const { R::Filter::FILTERS && P::FLOWS } {
             self.relax_both(dt);
-        } else if const { R::RELAXES } {
+        } else if const { R::Filter::FILTERS } {
             self.relax(dt);
         }
     }
 
     /// Momenta and masses of the DOFs; returns their totals, of both phases.
     pub(super) fn map_momenta(&mut self) -> [MassMomentum<T, D>; 2] {
-        match const { (R::AMOUNTS_AT_PARTICLES, R::RELAXES, P::FLOWS) } {
+        match const { (R::Mass::OF_PARTICLES, R::Filter::FILTERS, P::FLOWS) } {
             (true, false, _) => {}
             (true, true, false) => self.sum_momenta::<1>(),
             (true, true, true) => self.sum_momenta::<2>(),
@@ -252,7 +252,7 @@ where
 
     /// Masses of the DOFs of the solid alone.
     pub(super) fn sum_solid_masses(&mut self) {
-        if const { R::PARTICLE_MATRIX } {
+        if const { R::Mass::IN_ACCELERATION } {
             self.assemble_particle_matrix();
         }
         self.sum::<1, 0, 0>(UniformLoad::none());
@@ -260,7 +260,7 @@ where
 
     /// Momenta and masses of the DOFs of the solid alone, from the velocities as they are.
     pub(super) fn map_solid(&mut self) {
-        match const { R::AMOUNTS_AT_PARTICLES } {
+        match const { R::Mass::OF_PARTICLES } {
             true => self.sum_momenta::<1>(),
             false => self.fit_momenta(true),
         }
@@ -286,7 +286,7 @@ where
 
     /// Momenta of the DOFs from fits of densities and, if `masses`, what divides them.
     pub(super) fn fit_momenta(&mut self, masses: bool) {
-        let lumped = self.mass == MassModel::FittedLumped;
+        let lumped = self.mass == Divisor::FittedLumped;
         let batched = self.batched();
         let fitted = Fitted {
             basis: &self.basis,
@@ -341,7 +341,7 @@ where
         } else {
             let walls = Walls::of_solid(&self.face_dofs, forcing);
             // The particles' matrix is the one that the accelerations were solved with.
-            divide_by_mass(&mut self.dofs, self.mass, &walls, !R::PARTICLE_MATRIX);
+            divide_by_mass(&mut self.dofs, self.mass, &walls, !R::Mass::IN_ACCELERATION);
         }
     }
 }

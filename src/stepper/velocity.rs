@@ -4,8 +4,9 @@ use nalgebra::SVector;
 use num_traits::Zero;
 
 use super::acceleration::Walls;
-use super::dofs::{Dofs, MassModel};
+use super::dofs::Dofs;
 use super::matrix::Unknown;
+use crate::mass::Divisor;
 use crate::scalar::Scalar;
 use crate::simd::with_features;
 
@@ -14,7 +15,7 @@ use crate::simd::with_features;
 #[inline(never)]
 pub(super) fn divide_by_mass<T: Scalar, const D: usize>(
     dofs: &mut Dofs<T, D>,
-    mass: MassModel,
+    mass: Divisor,
     walls: &Walls<'_, T, D>,
     fresh: bool,
 ) {
@@ -26,14 +27,14 @@ pub(super) fn divide_by_mass<T: Scalar, const D: usize>(
 #[inline(never)]
 pub(super) fn undo_mass<T: Scalar, const D: usize>(
     dofs: &mut Dofs<T, D>,
-    mass: MassModel,
+    mass: Divisor,
     walls: &Walls<'_, T, D>,
     fresh: bool,
 ) {
     match mass {
-        MassModel::Particles => divide(&mut dofs.velocity, &dofs.mass),
-        MassModel::FittedLumped => divide(&mut dofs.velocity, &dofs.lumped),
-        MassModel::FittedMatrix { .. } | MassModel::ParticleMatrix => {
+        Divisor::Particles => divide(&mut dofs.velocity, &dofs.mass),
+        Divisor::FittedLumped => divide(&mut dofs.velocity, &dofs.lumped),
+        Divisor::FittedMatrix { .. } | Divisor::ParticleMatrix => {
             let pick = |velocity, _| velocity;
             dofs.solve(Unknown::Velocity, mass, walls, fresh, &pick);
         }

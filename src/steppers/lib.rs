@@ -10,7 +10,7 @@ use materialpoint::basis::BasisFamily;
 use materialpoint::error::SetupError;
 use materialpoint::grid::Grid;
 use materialpoint::law::{AnyLaw, LawSweep};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{KnownIn, Method, MethodVisitor, ReconstructionKind};
 use materialpoint::particles::Particles;
 use materialpoint::phase::{OnePhase, Phase, PoreLiquid, TwoPhase};
@@ -29,6 +29,9 @@ pub enum BuildError {
     /// The method does not exist here.
     #[error("there is no method {0} in so many dimensions")]
     NoSuchMethod(Method),
+    /// The reconstruction of the method has another mass.
+    #[error("this method has no mass behind its velocities that is {}", .0.name())]
+    NoSuchMass(VelocityMass),
     /// What it is to be made of does not serve.
     #[error(transparent)]
     Setup(#[from] SetupError),
@@ -43,7 +46,7 @@ pub struct Parts<T, const D: usize> {
     pub law: AnyLaw<T, D>,
     /// The liquid in the pores, if there is one.
     pub liquid: Option<TwoPhase<T>>,
-    /// Mass behind the DOF velocities.
+    /// Mass behind the DOF velocities, one that the method has.
     pub velocity_mass: VelocityMass,
     /// Whether published TLS takes virtual points where particles are few.
     pub virtual_points: bool,
@@ -96,6 +99,10 @@ where
 {
     type Output = Built<D>;
 
+    fn lends_virtual_points(&self) -> bool {
+        self.virtual_points
+    }
+
     fn visit<B, R>(mut self, basis: B, reconstruction: R) -> Self::Output
     where
         B: BasisFamily<T, D> + Send + 'static,
@@ -119,7 +126,7 @@ where
     T: Scalar,
     R: Reconstruction<T, D>,
 {
-    D > 2 || D == 2 && R::PARTICLE_MATRIX
+    D > 2 || D == 2 && R::Mass::IN_ACCELERATION
 }
 
 impl<T, const D: usize> Parts<T, D> {
@@ -127,7 +134,7 @@ impl<T, const D: usize> Parts<T, D> {
     fn of_phase<B, R, P>(
         self,
         basis: B,
-        mut reconstruction: R,
+        reconstruction: R,
         phase: P,
         data: fn(PoreLiquid<f64, D>) -> P::Particle,
     ) -> Built<D>
@@ -139,13 +146,12 @@ impl<T, const D: usize> Parts<T, D> {
         P: Phase<T, D> + Clone + 'static,
         P::Particle: Record<T>,
     {
-        reconstruction.lend_virtual_points(self.virtual_points);
+        let mass = R::Mass::named(self.velocity_mass);
+        let mass = mass.ok_or(BuildError::NoSuchMass(self.velocity_mass))?;
         let pores = P::FLOWS.then_some(self.pores);
         let particles = made_of(self.particles, pores, data, &self.law, self.under_stress)?;
         let setup = Setup::new(self.grid, basis, reconstruction, self.law, phase, particles);
-        let setup = setup
-            .with_velocity_mass(self.velocity_mass)
-            .with_surface(self.surface);
+        let setup = setup.with_velocity_mass(mass).with_surface(self.surface);
         let stepper = Stepper::new(setup)?;
         Ok(Box::new(stepper))
     }

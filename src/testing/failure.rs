@@ -118,7 +118,7 @@ pub enum Property {
     ConstantGradient,
     /// `integrate_cells` and `integrate_conserved_cells` stream what all cells together do.
     CellsStreamTheSame,
-    /// `integrate_batch` and `integrate_single` stream what one cell after another does.
+    /// The library's fits of four cells at once stream what one cell after another does.
     FourStreamTheSame,
     /// `COUPLED = false` is said only where a phase does nothing.
     CoupledAsSaid,

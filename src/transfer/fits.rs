@@ -14,7 +14,7 @@ use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::field::{Field, MassMomentum, Pair, Symmetric, symmetric_component};
 use crate::grid::Cell;
 use crate::particles::DomainViews;
-use crate::reconstruction::{Cloud, Kept, Point, Reconstruction, Values, batch_of_cells};
+use crate::reconstruction::{Cloud, Kept, Point, Reconstruction, Streams, Values, batch_of_cells};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Number, Packs, dispatch_vectors, each, in_lanes, inlined};
 use crate::taylor::MOST_COMPONENTS;
@@ -239,14 +239,14 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         let (reconstruction, cells) = (fits.reconstruction, fits.cells.clone());
         // A copy: a compiler then knows that what is written leaves it alone.
         let cloud = &{ *fits.cloud };
-        let (points, units) = line(k, reconstruction.line());
+        let (points, units) = line(k, R::Points::line(reconstruction));
         let mut functions = AtPoints::<K::V, D>::new(k, points);
-        let mut matrices = CellMatrices::<T, K::V, D>::new(k, reconstruction.weighted_line());
+        let mut matrices = CellMatrices::<T, K::V, D>::new(k, R::Points::weighted_line(reconstruction));
         let mut sums = Sums::<K::V, D, S, C, G>::new(k);
         let mut pairs = [PairSums::<K::V, D>::new(k); W];
         let slopes = self.inverse(k);
         let mut reduced = 0;
-        let mut numbers = kept.chunks_exact_mut(R::KEPT.max(1));
+        let mut numbers = kept.chunks_exact_mut(R::Points::KEPT.max(1));
         for first in cells.clone().step_by(LANES) {
             let places = first..cells.end.min(first + LANES);
             let four = batch_of_cells(cloud, places.clone()).map(|(_, cell)| cell);
@@ -255,12 +255,13 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 fresh: fits.fresh,
             };
             // Matrices of masses want the values at the points.
-            let outcome = if const { R::FITS_TAYLOR && W == 0 } {
+            let outcome = if const { W == 0 } {
                 matrices.take(k, self, &four);
                 let ones = [k.splat(T::one()); D];
                 let nothing = I::parts(&[k.splat(T::zero()); MOST_COMPONENTS], &ones);
                 let mut parts = [nothing; MOST_FUNCTIONS];
-                let outcome = reconstruction.fit_batch::<K, I::Field>(
+                let outcome = R::Points::fit_batch::<K, I::Field>(
+                    reconstruction,
                     k,
                     (cloud, places.clone()),
                     I::CONSERVED,
@@ -273,7 +274,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 outcome
             } else {
                 functions.take(k, self, &four, units);
-                reconstruction.integrate_batch::<K, I::Field>(
+                R::Points::integrate_batch::<K, I::Field>(
+                    reconstruction,
                     k,
                     (cloud, places.clone()),
                     I::CONSERVED,
@@ -375,7 +377,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 });
             };
             let cell = occupied[place] as usize;
-            let full = fits.reconstruction.integrate_single(
+            let full = R::Points::integrate_single(
+                fits.reconstruction,
                 fits.cloud,
                 cell,
                 I::CONSERVED,

@@ -13,7 +13,7 @@ use crate::scalar::Scalar;
 /// since what a fit of the density changed would be missing when the particles take their velocities back:
 /// so [`Shepard`](crate::reconstruction::Shepard), [`SubPoints`](crate::reconstruction::SubPoints) or a
 /// reconstruction of your own with
-/// [`AMOUNTS_AT_PARTICLES`](crate::reconstruction::Reconstruction::AMOUNTS_AT_PARTICLES); one phase, and
+/// [`ParticleMass`](crate::mass::ParticleMass); one phase, and
 /// walls that hold or let go but do not rub. Anything else is refused with an error when the stepper is made,
 /// or the step taken.
 ///

@@ -58,7 +58,7 @@ use nalgebra::SVector;
 
 use crate::basis::{BasisFamily, Domain, Factors, FixedPoints};
 use crate::grid::{Cell, Grid};
-use crate::reconstruction::Reconstruction;
+use crate::reconstruction::{Reconstruction, Streams};
 use crate::scalar::Scalar;
 use crate::simd::{Lanes, Packs, each, packs_serve};
 
@@ -69,7 +69,7 @@ pub(crate) const fn in_packs<T: Scalar, const D: usize, B: BasisFamily<T, D>>() 
 
 /// Whether fits can be integrated over four cells at a time.
 pub(crate) const fn fit<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>>() -> bool {
-    R::BATCHED
+    R::Points::IN_FOURS
         && match B::AT_FIXED_POINTS {
             FixedPoints::Alike => in_packs::<T, D, B>(),
             FixedPoints::Linear => true,

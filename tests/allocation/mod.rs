@@ -6,7 +6,7 @@ mod memory;
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Method, MethodVisitor, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, OnePhase};
@@ -45,7 +45,7 @@ impl MethodVisitor<f64> for LargeBar {
             OnePhase,
             particles,
         )
-        .with_velocity_mass(self.0);
+        .with_velocity_mass(MassModel::preferring(self.0));
         Box::new(Stepper::new(setup).unwrap())
     }
 }

@@ -7,7 +7,7 @@ use materialpoint::basis::{AxisBasis, AxisCell, BSpline, BasisFamily, Functions,
 use materialpoint::error::StepError;
 use materialpoint::grid::{Cell, Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
@@ -112,7 +112,7 @@ where
             OnePhase,
             particles,
         )
-        .with_velocity_mass(VelocityMass::Consistent),
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
     )
     .unwrap();
     let walls = Face::all::<D>().fold(Forcing::none(), |forcing, face| {

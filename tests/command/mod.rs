@@ -127,6 +127,7 @@ fn the_default_command_compares_all_methods_and_draws_them() {
             "basis",
             "reconstruction",
             "subpoints",
+            "velocity_mass",
             "cells",
             "errors",
             "orders",

@@ -3,7 +3,7 @@
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Moduli, NeoHookean};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
@@ -48,7 +48,7 @@ where
             OnePhase,
             particles,
         )
-        .with_velocity_mass(mass),
+        .with_velocity_mass(MassModel::preferring(mass)),
     )
     .unwrap();
     for _ in 0..STEPS {

@@ -8,7 +8,7 @@ mod entering;
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Method, MethodVisitor};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
@@ -57,7 +57,7 @@ impl MethodVisitor<f64> for Bar {
             OnePhase,
             particles,
         )
-        .with_velocity_mass(self.mass);
+        .with_velocity_mass(MassModel::preferring(self.mass));
         Box::new(Stepper::new(setup).unwrap())
     }
 }

@@ -194,7 +194,6 @@ impl<S: Copy + Default + Send + Sync> materialpoint::law::ConstitutiveLaw<f64, 1
 fn moves_the_stress<S: Copy + Default + Send + Sync>() -> bool {
     use materialpoint::basis::BSpline;
     use materialpoint::grid::Grid;
-    use materialpoint::mass::VelocityMass;
     use materialpoint::particles::{Particles, lattice};
     use materialpoint::phase::OnePhase;
     use materialpoint::reconstruction::RelaxedTaylor;
@@ -211,7 +210,7 @@ fn moves_the_stress<S: Copy + Default + Send + Sync>() -> bool {
     let law = Frozen(std::marker::PhantomData::<S>);
     let fits = RelaxedTaylor::<f64, 1, 3>::for_degree(2);
     let setup = Setup::new(grid, BSpline::<2>, fits, law, OnePhase, particles);
-    let mut stepper = Stepper::new(setup.with_velocity_mass(VelocityMass::Constrained)).unwrap();
+    let mut stepper = Stepper::new(setup).unwrap();
     stepper.step(1e-6, &Forcing::none()).unwrap();
     stepper.particles().stress != before
 }

@@ -620,7 +620,8 @@ fn the_thermal_example_prints_what_theory_says() {
 fn the_pages_show_the_examples_as_they_are() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
-    let files = ["own_law", "own_basis", "apic", "heat"].map(|name| read(&format!("examples/{name}.rs")));
+    let files = ["own_law", "own_basis", "linear_taylor", "apic", "heat"]
+        .map(|name| read(&format!("examples/{name}.rs")));
     let examples = files.concat();
     let page = read("docs/guide/own-types.md");
     let shown: Vec<&str> = page
@@ -628,7 +629,7 @@ fn the_pages_show_the_examples_as_they_are() {
         .skip(1)
         .filter_map(|rest| rest.split("```").next())
         .collect();
-    assert_eq!(shown.len(), 4);
+    assert_eq!(shown.len(), 5);
     for part in shown {
         assert!(examples.contains(part), "{part}");
     }

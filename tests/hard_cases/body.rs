@@ -3,7 +3,7 @@
 use materialpoint::basis::{self, BasisFamily};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::ConstitutiveLaw;
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::Particles;
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{self, Reconstruction, RelaxedTaylor, Taylor};
@@ -157,7 +157,7 @@ impl<L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Copy + 'static> Bodies<L> 
                 OnePhase,
                 self.particles.clone(),
             )
-            .with_velocity_mass(velocity_mass)
+            .with_velocity_mass(MassModel::preferring(velocity_mass))
             .with_surface(self.surface.clone()),
         );
         Box::new(stepper.unwrap())

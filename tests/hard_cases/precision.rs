@@ -10,7 +10,7 @@
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::particles::Particles;
 use materialpoint::phase::OnePhase;
@@ -89,7 +89,7 @@ where
             OnePhase,
             start.cast(),
         )
-        .with_velocity_mass(VelocityMass::Consistent),
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
     );
     Box::new(stepper.unwrap())
 }

@@ -7,7 +7,7 @@
 use materialpoint::basis::BSpline;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{OnePhase, Phase, PhaseStep};
 use materialpoint::reconstruction::{Reconstruction, Relaxation, RelaxedTaylor, Shepard, Taylor};
@@ -60,7 +60,7 @@ fn bar<R: Reconstruction<f64, 1>, P: Phase<f64, 1>>(
             phase,
             particles,
         )
-        .with_velocity_mass(VelocityMass::Consistent),
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
     )
     .unwrap()
 }

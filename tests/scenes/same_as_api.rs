@@ -11,7 +11,7 @@ use materialpoint::law::{
     AnyLaw, ConeMatch, ConstitutiveLaw, DruckerPrager, Hencky, Hill, LinearElastic, Logarithmic, Moduli,
     NeoHookean, NewtonianFluid, StVenantKirchhoff, Strength, VonMises,
 };
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
@@ -112,7 +112,7 @@ impl Case {
         let mut simulation: Box<dyn Simulation<D>> = Box::new(
             Stepper::new(
                 Setup::new(grid, Linear, reconstruction, law, OnePhase, particles)
-                    .with_velocity_mass(VelocityMass::Constrained),
+                    .with_velocity_mass(MassModel::preferring(VelocityMass::Constrained)),
             )
             .unwrap(),
         );
@@ -137,7 +137,10 @@ impl Case {
             grid,
             law,
             liquid: None,
-            velocity_mass: VelocityMass::Lumped,
+            velocity_mass: match method.reconstruction {
+                ReconstructionKind::RelaxedTaylor => VelocityMass::Constrained,
+                _ => VelocityMass::Lumped,
+            },
             virtual_points: false,
             particles,
             pores: Vec::new(),

@@ -14,7 +14,7 @@ use std::array::from_fn;
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Moduli, NeoHookean};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor, Shepard};
@@ -133,7 +133,7 @@ where
             OnePhase,
             particles,
         )
-        .with_velocity_mass(VelocityMass::Consistent),
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
     )
     .unwrap();
     let angle = case.slope.to_radians();

@@ -8,7 +8,6 @@
 use materialpoint::basis::{BSpline, BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Moduli, NeoHookean};
-use materialpoint::mass::VelocityMass;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::RelaxedTaylor;
@@ -229,7 +228,7 @@ where
     let moduli = Moduli::from_young(1e5, 0.3).unwrap();
     let fits = RelaxedTaylor::<f64, 2, 6>::for_basis(&basis);
     let setup = Setup::new(grid, basis, fits, NeoHookean { moduli }, OnePhase, particles);
-    let mut stepper = Stepper::new(setup.with_velocity_mass(VelocityMass::Constrained)).unwrap();
+    let mut stepper = Stepper::new(setup).unwrap();
     let wall = |axis| {
         (
             Face {

@@ -4,7 +4,7 @@ use materialpoint::basis::{BSpline, BasisFamily, Linear};
 use materialpoint::error::StepError;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, OnePhase, Phase, TwoPhase};
 use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor, Shepard, Taylor};
@@ -50,7 +50,7 @@ where
             phase,
             particles,
         )
-        .with_velocity_mass(VelocityMass::Consistent),
+        .with_velocity_mass(MassModel::preferring(VelocityMass::Consistent)),
     )
     .unwrap()
 }

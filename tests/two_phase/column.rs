@@ -3,7 +3,7 @@
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{ConstitutiveLaw, LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Method, MethodVisitor};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
@@ -121,7 +121,7 @@ where
         Box::new(
             Stepper::new(
                 Setup::new(grid, basis, reconstruction, column.law.clone(), phase, particles)
-                    .with_velocity_mass(column.mass)
+                    .with_velocity_mass(MassModel::preferring(column.mass))
                     .with_surface(surface),
             )
             .unwrap(),

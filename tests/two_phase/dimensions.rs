@@ -6,7 +6,7 @@
 use materialpoint::basis::{BSpline, BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
 use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
@@ -52,7 +52,7 @@ where
             PHASE,
             particles,
         )
-        .with_velocity_mass(mass),
+        .with_velocity_mass(MassModel::preferring(mass)),
     )
     .unwrap();
     let walls = Face::all::<D>().fold(Forcing::none(), |f, face| {

@@ -9,7 +9,7 @@
 use materialpoint::basis::BasisFamily;
 use materialpoint::grid::Grid;
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Method, MethodVisitor, ReconstructionKind};
 use materialpoint::particles::Particles;
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
@@ -73,11 +73,11 @@ impl MethodVisitor<f64> for &Scene {
                 self.phase,
                 particles,
             )
-            .with_velocity_mass(if self.lumped {
+            .with_velocity_mass(MassModel::preferring(if self.lumped {
                 VelocityMass::Lumped
             } else {
                 VelocityMass::Consistent
-            })
+            }))
             .with_surface(surface),
         );
         Box::new(stepper.unwrap())

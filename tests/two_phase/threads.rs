@@ -4,7 +4,7 @@
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::grid::{Face, Grid};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::VelocityMass;
+use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
 use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
@@ -59,7 +59,7 @@ where
             PHASE,
             particles,
         )
-        .with_velocity_mass(mass),
+        .with_velocity_mass(MassModel::preferring(mass)),
     );
     Box::new(stepper.unwrap())
 }

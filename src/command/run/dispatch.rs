@@ -76,6 +76,7 @@ where
         };
         parts.stepper(scene.method.method()).map_err(|error| match error {
             BuildError::NoSuchMethod(method) => RunError::NoSuchMethod(method),
+            BuildError::NoSuchMass(mass) => RunError::NoSuchMass(mass),
             BuildError::Setup(error) => of_body(error, &first_particles),
         })
     }

@@ -6,6 +6,7 @@ use super::checkpoint::CheckpointError;
 use crate::output::OutputError;
 use crate::scene::ExpressionError;
 use materialpoint::error::{GridError, SetupError, StepError, named};
+use materialpoint::mass::VelocityMass;
 use materialpoint::method::Method;
 use materialpoint::reference::ReferenceError;
 
@@ -33,6 +34,9 @@ pub enum RunError {
     /// No such combination of basis and reconstruction.
     #[error("method {0} does not exist")]
     NoSuchMethod(Method),
+    /// A reconstruction that has another mass.
+    #[error("method.velocity_mass = \"{}\": the reconstruction has no such mass; leave it out", .0.name())]
+    NoSuchMass(VelocityMass),
     /// Another number of axes than the caller counts on.
     #[error("the scene has {found} axes; expected {expected}")]
     Dimension {

@@ -45,6 +45,8 @@ pub struct Row {
     pub reconstruction: &'static str,
     /// Sub-points of each particle; 1 is the particle itself.
     pub subpoints: u8,
+    /// Mass behind the DOF velocities: the scene's, where the method has a choice.
+    pub velocity_mass: &'static str,
     /// Number of cells along the first axis.
     pub cells: usize,
     /// Number of particles.
@@ -86,6 +88,7 @@ impl Row {
             degree: method.basis.degree(),
             reconstruction: method.reconstruction.name(),
             subpoints: method.subpoints,
+            velocity_mass: crate::scene::Method::default_velocity_mass(method.reconstruction).name(),
             cells,
             particles: 0,
             steps: 0,
@@ -223,6 +226,7 @@ fn one(scene: &Scene, method: Method, cells: usize) -> Result<(Row, Timing, Opti
         _ => in_dimension!(scene, figures(&scene)).map(|summary| (summary, None)),
     };
     let mut row = Row::new(method, cells);
+    row.velocity_mass = scene.method.velocity_mass.name();
     let mut timing = Timing {
         method,
         cells,
@@ -320,6 +324,17 @@ mod tests {
         rows[1].method = Method::NINE[1];
         fill_orders(&mut rows);
         assert!(rows[1].orders.is_empty(), "of another method");
+    }
+
+    #[test]
+    fn a_row_says_which_mass_its_method_took() {
+        let text = Scene::builtin("vibrating-bar-small").unwrap_or_default();
+        let told = ["method.reconstruction=taylor", "method.velocity_mass=constrained"];
+        let scene = Scene::from_toml(text, &told.map(String::from)).unwrap();
+        let taken = |method| one(&scene, method, 5).unwrap().0.velocity_mass;
+        // Linear functions with Shepard, which lumps always, and with Taylor.
+        assert_eq!(taken(Method::NINE[0]), "lumped");
+        assert_eq!(taken(Method::NINE[1]), "constrained");
     }
 
     #[test]

@@ -17,10 +17,12 @@ use std::ops::Range;
 use super::gauss::GaussRule;
 use super::taylor::hand_over;
 use super::{
-    BatchStatus, Cloud, CourantNumbers, Filling, Kept, Point, Reconstruction, Shepard, Stored, Values,
+    BatchStatus, CellStream, Cloud, CourantNumbers, Filling, Filter, Filters, FourCells, InFours, Kept,
+    NullSpace, Point, Reconstruction, Stored, Values,
 };
 use crate::basis::BasisFamily;
 use crate::field::Field;
+use crate::mass::ParticleMatrix;
 use crate::parallel::CELLS;
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Packs, dispatch};
@@ -67,7 +69,8 @@ const ALIKE: f64 = 2.0;
 /// any slant, the particles themselves are the points of its force, nothing is relaxed there, and the stepper
 /// ties its functions to those of the next cells ([`crate::mass::Penalty`]). The same ties hold beyond one
 /// dimension where particles do not see all that a basis is made of. Cells that neither their particles nor
-/// the cells near them determine (one particle a cell, drops) are lumped, and stepped as by [`Shepard`].
+/// the cells near them determine (one particle a cell, drops) are lumped, and stepped as by
+/// [`Shepard`](super::Shepard).
 #[doc = include_str!("../../../docs/formulas.html")]
 #[derive(Clone, Debug)]
 pub struct RelaxedTaylor<T, const D: usize, const NB: usize> {
@@ -170,14 +173,9 @@ fn make_room<A>(values: &mut Vec<A>, count: usize) {
 }
 
 impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for RelaxedTaylor<T, D, NB> {
-    const FIELDS_AT_PARTICLES: bool = false;
-    const AMOUNTS_AT_PARTICLES: bool = true;
-    const PARTICLE_MATRIX: bool = true;
-    const CELLWISE: bool = true;
-    const RELAXES: bool = true;
-
-    const BATCHED: bool = true;
-    const NON_LOCAL: bool = true;
+    type Points = InFours;
+    type Mass = ParticleMatrix;
+    type Filter = NullSpace;
 
     fn prepare(&mut self, cloud: &Cloud<'_, T, D>) {
         self.reserve(cloud.grid.cell_count());
@@ -196,31 +194,54 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     ) {
         // Not what a step calls: that streams cells, and allocates nothing.
         let values: Vec<Q> = (0..cloud.positions.len()).map(value).collect();
-        self.fit_field(cloud, &Stored(&values));
+        self.take_in_field(cloud, &Stored(&values));
         self.integrate_cells(cloud, 0..self.cells.len(), |p| values[p], sink);
     }
 
-    fn configure_for_saturated(&mut self) {
-        self.components = D * D + 1;
-        if let Some(relaxation) = self.with_liquid {
-            self.relaxation = relaxation;
+    fn reduced_cells(&self) -> usize {
+        self.reduced
+    }
+
+    fn bytes(&self) -> usize {
+        self.cells.capacity() * size_of::<RelaxedCell>()
+            + self.grams.capacity() * size_of::<KeptProducts<T, NB>>()
+            + self.fits.capacity() * size_of::<FourFits<T, D, NB>>()
+            + self.sums.capacity() * size_of::<[T; LANES]>()
+            + self.pulls.bytes()
+    }
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> Filter<T, D, RelaxedTaylor<T, D, NB>> for NullSpace {}
+
+impl<T: Scalar, const D: usize, const NB: usize> Filters<T, D, RelaxedTaylor<T, D, NB>> for NullSpace {
+    const FILTERS: bool = true;
+
+    fn relax<Q: Field<T>>(
+        fits: &mut RelaxedTaylor<T, D, NB>,
+        cloud: &Cloud<'_, T, D>,
+        weights: Option<&[T]>,
+        crossed: &[CourantNumbers<T>],
+        values: &mut [Q],
+    ) {
+        match weights {
+            None => fits.relax_towards_both(cloud, crossed, values),
+            Some(weights) => fits.relax_towards_own(cloud, weights, crossed, values),
         }
     }
 
-    fn fit_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Values<T, Q> + Sync)) {
-        self.sum_field(cloud, value);
+    fn filling(fits: &RelaxedTaylor<T, D, NB>, place: usize) -> Filling {
+        fits.cells.get(place).map_or(Filling::Filled, |cell| cell.filling)
     }
 
-    #[inline(always)]
-    fn integrate_conserved<Q: Field<T>>(
-        &mut self,
-        cloud: &Cloud<'_, T, D>,
-        amount: impl Fn(usize) -> Q,
-        sink: impl FnMut(&Point<T, D>, Q),
-    ) {
-        Shepard.integrate_conserved(cloud, amount, sink);
+    fn suit_liquid(fits: &mut RelaxedTaylor<T, D, NB>) {
+        fits.components = D * D + 1;
+        if let Some(relaxation) = fits.with_liquid {
+            fits.relaxation = relaxation;
+        }
     }
+}
 
+impl<T: Scalar, const D: usize, const NB: usize> CellStream<T, D> for RelaxedTaylor<T, D, NB> {
     #[inline(always)]
     fn integrate_cells<Q: Field<T>>(
         &self,
@@ -230,6 +251,14 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
         dispatch!(T, |k| self.integrate_in(k, cloud, cells, &value, &mut sink));
+    }
+}
+
+impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for RelaxedTaylor<T, D, NB> {
+    const NON_LOCAL: bool = true;
+
+    fn take_in_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Values<T, Q> + Sync)) {
+        self.sum_field(cloud, value);
     }
 
     fn line(&self) -> impl Iterator<Item = T> {
@@ -258,8 +287,6 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         }
         self.batch_status(cells)
     }
-
-    const FITS_TAYLOR: bool = true;
 
     fn weighted_line(&self) -> impl Iterator<Item = (T, T)> {
         self.rule.weighted_line()
@@ -308,34 +335,5 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
             self.integrate_apart(cloud, place, value, sink);
         }
         true
-    }
-
-    fn relax<Q: Field<T>>(
-        &mut self,
-        cloud: &Cloud<'_, T, D>,
-        weights: Option<&[T]>,
-        crossed: &[CourantNumbers<T>],
-        values: &mut [Q],
-    ) {
-        match weights {
-            None => self.relax_towards_both(cloud, crossed, values),
-            Some(weights) => self.relax_towards_own(cloud, weights, crossed, values),
-        }
-    }
-
-    fn filling(&self, place: usize) -> Filling {
-        self.cells.get(place).map_or(Filling::Filled, |cell| cell.filling)
-    }
-
-    fn reduced_cells(&self) -> usize {
-        self.reduced
-    }
-
-    fn bytes(&self) -> usize {
-        self.cells.capacity() * size_of::<RelaxedCell>()
-            + self.grams.capacity() * size_of::<KeptProducts<T, NB>>()
-            + self.fits.capacity() * size_of::<FourFits<T, D, NB>>()
-            + self.sums.capacity() * size_of::<[T; LANES]>()
-            + self.pulls.bytes()
     }
 }

@@ -30,12 +30,12 @@ fn a_weighted_relaxation_keeps_the_momentum_and_never_raises_the_energy() {
         fit.prepare(&cloud);
         let rough: Vec<f64> = (0..17).map(|p| f64::from(p * 11 % 7) - 2.0).collect();
         let mut v = rough.clone();
-        fit.relax(&cloud, Some(&mass), &[crossed; 3], &mut v);
+        NullSpace::relax(&mut fit, &cloud, Some(&mass), &[crossed; 3], &mut v);
         assert_relative_eq!(momentum(&v), momentum(&rough), max_relative = 1e-14);
         assert!(energy(&v) < 0.99 * energy(&rough));
         let smooth: Vec<f64> = positions.iter().map(|x| 1.0 + x[0] - 0.3 * x[0] * x[0]).collect();
         let mut v = smooth.clone();
-        fit.relax(&cloud, Some(&mass), &[crossed; 3], &mut v);
+        NullSpace::relax(&mut fit, &cloud, Some(&mass), &[crossed; 3], &mut v);
         for (found, expected) in v.iter().zip(&smooth) {
             assert_relative_eq!(found, expected, epsilon = 1e-13);
         }
@@ -64,14 +64,14 @@ fn a_slope_from_the_neighbours_leaves_the_mean_of_a_cell_alone() {
             fit.prepare(&cloud);
             let pull = |fit: &mut RelaxedTaylor<f64, 1, 3>, stress: &[f64]| {
                 let mut sum = 0.0;
-                fit.fit_field(&cloud, &Stored(stress));
+                fit.take_in_field(&cloud, &Stored(stress));
                 fit.integrate_cells(&cloud, 2..3, |p| stress[p], |_, weighted| sum += weighted);
                 sum
             };
             let mut stress: Vec<f64> = positions.iter().map(|x| x[0].floor()).collect();
             let before = pull(&mut fit, &stress);
             assert_relative_eq!(before, 2.0, epsilon = 1e-12);
-            fit.relax(&cloud, None, &[crossed(0.01); 5], &mut stress);
+            NullSpace::relax(&mut fit, &cloud, None, &[crossed(0.01); 5], &mut stress);
             let middle = &stress[2 * per_cell..3 * per_cell];
             assert!(middle[0] < 2.0 && middle[per_cell - 1] > 2.0, "{middle:?}");
             (pull(&mut fit, &stress) - before).abs()
@@ -95,7 +95,7 @@ fn cells_alone_are_relaxed_as_four_at_once() {
             fit.prepare(&cloud);
             fit.cells.iter_mut().for_each(|cell| cell.kind = kind);
             let mut values: Vec<f64> = (0..positions.len()).map(|p| (p * 11 % 7) as f64).collect();
-            fit.relax(&cloud, None, &[crossed(0.3); 5], &mut values);
+            NullSpace::relax(&mut fit, &cloud, None, &[crossed(0.3); 5], &mut values);
             values
         };
         let (four, alone) = (relaxed(Kind::Batch), relaxed(Kind::Fallback));
@@ -119,7 +119,7 @@ fn no_cell_of_a_full_box_counts_as_ended_within() {
         let mut fit = RelaxedTaylor::<f64, 2, 6>::for_degree(2);
         fit.prepare(&cloud);
         for place in 0..cells * cells {
-            assert_eq!(fit.filling(place), Filling::Filled, "{cells}");
+            assert_eq!(NullSpace::filling(&fit, place), Filling::Filled, "{cells}");
         }
     }
 }

@@ -11,6 +11,7 @@ use super::wall::coordinates;
 use super::{WallAction, WallContact};
 use crate::basis::BasisFamily;
 use crate::law::LawSweep;
+use crate::mass::MassModel;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -77,7 +78,7 @@ where
                 velocity: &mut contact.velocity,
                 closed: &contact.closed,
                 // Symmetric only where the particles' own matrix is what accelerations are solved with.
-                subspace: R::PARTICLE_MATRIX.then_some(&mut contact.subspace),
+                subspace: R::Mass::IN_ACCELERATION.then_some(&mut contact.subspace),
             };
             let solved = problem.solve(least);
             if !solved.changed {
@@ -96,7 +97,7 @@ where
             self.respond(&rest);
             let after = self.contact.energy_with(&self.dofs.velocity);
             // Only where the particles' matrix makes the operator symmetric is this their energy.
-            if R::PARTICLE_MATRIX && after - energy > energy.abs() * T::lit(RISE) {
+            if R::Mass::IN_ACCELERATION && after - energy > energy.abs() * T::lit(RISE) {
                 failures += 1;
                 self.contact.take_back(failures);
                 continue;
@@ -130,7 +131,7 @@ where
         let walls = Walls::of_solid(&self.face_dofs, rest);
         let force = &mut self.dofs.force;
         force.copy_from_slice(&self.contact.gain);
-        if R::PARTICLE_MATRIX {
+        if R::Mass::IN_ACCELERATION {
             let pick = |_, acceleration| acceleration;
             self.dofs
                 .solve(Unknown::Acceleration, self.mass, &walls, true, &pick);
@@ -145,7 +146,7 @@ where
         self.map_momenta();
         // The particles' matrix is the one that the accelerations were solved with.
         let walls = Walls::of_solid(&self.face_dofs, rest);
-        divide_by_mass(&mut self.dofs, self.mass, &walls, !R::PARTICLE_MATRIX);
+        divide_by_mass(&mut self.dofs, self.mass, &walls, !R::Mass::IN_ACCELERATION);
         std::mem::swap(&mut self.particles.velocity, &mut self.contact.kicks);
     }
 

@@ -39,6 +39,7 @@ use super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
 use crate::law::LawSweep;
+use crate::mass::MassModel;
 use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
@@ -217,7 +218,7 @@ where
     // Out of line: there is a step for every method, and few runs have walls that rub.
     #[inline(never)]
     fn apply_contact_with(&mut self, forcing: &Forcing<T, D>) {
-        let by_sums = const { R::AMOUNTS_AT_PARTICLES && !R::PARTICLE_MATRIX };
+        let by_sums = const { R::Mass::OF_PARTICLES && !R::Mass::IN_ACCELERATION };
         if !self.contact.dofs.fit(forcing, self.dofs.mass.len()) {
             let reach = self.basis.reach();
             let room = Room {

@@ -7,6 +7,7 @@ use super::super::dofs::Dofs;
 use super::super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::law::LawSweep;
+use crate::mass::MassModel;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -26,7 +27,7 @@ where
     /// Implicit drag takes the velocities at the end of the step, `v + dt a`: two equations in two unknowns a
     /// DOF, here solved without products of masses, which would underflow in nearly empty cells.
     pub(in super::super) fn accelerate_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        if R::PARTICLE_MATRIX {
+        if R::Mass::IN_ACCELERATION {
             return self.solve_both(dt, forcing);
         }
         let mixture = Mixture {

@@ -10,7 +10,7 @@
 //! $$m_w a_w = f_w + d(v_s - v_w) + m_w b,\qquad m_s a_s + \bar m_w a_w = f + (m_s + \bar m_w) b.$$
 //!
 //! A reconstruction with the particles' consistent matrices
-//! ([`crate::reconstruction::Reconstruction::PARTICLE_MATRIX`]) solves the same two balances with these
+//! ([`crate::mass::ParticleMatrix`]) solves the same two balances with these
 //! (`joint`), in one dimension so far.
 
 mod acceleration;

@@ -1,4 +1,4 @@
-//! The reconstruction's touch on the particles of two phases.
+//! The filter of the particles of two phases.
 
 use super::super::Stepper;
 use super::joint::Joint;
@@ -6,7 +6,7 @@ use crate::basis::BasisFamily;
 use crate::field::Pair;
 use crate::law::LawSweep;
 use crate::phase::{Phase, PoreLiquid};
-use crate::reconstruction::{Cloud, Reconstruction};
+use crate::reconstruction::{Cloud, Filters, Reconstruction};
 use crate::scalar::Scalar;
 use crate::transfer::Transfer;
 
@@ -44,10 +44,16 @@ where
             cuts: &self.cuts,
         };
         let reconstruction = &mut self.reconstruction;
-        reconstruction.relax(&cloud, None, crossed, state);
-        reconstruction.relax(&cloud, Some(&liquid_mass[..]), crossed, liquid_velocity);
+        R::Filter::relax(reconstruction, &cloud, None, crossed, state);
+        R::Filter::relax(
+            reconstruction,
+            &cloud,
+            Some(&liquid_mass[..]),
+            crossed,
+            liquid_velocity,
+        );
         let mass = Some(&particles.mass[..]);
-        reconstruction.relax(&cloud, mass, crossed, &mut particles.velocity);
+        R::Filter::relax(reconstruction, &cloud, mass, crossed, &mut particles.velocity);
         self.take_in_relaxed();
     }
 

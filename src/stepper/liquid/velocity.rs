@@ -7,6 +7,7 @@ use super::super::{Forcing, Stepper};
 use super::acceleration::ShareOfDrag;
 use crate::basis::BasisFamily;
 use crate::law::LawSweep;
+use crate::mass::MassModel;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -24,7 +25,7 @@ where
     /// DOF velocities of both phases at the step's start. The masses of the mapping serve again after the
     /// update: nothing has moved by then.
     pub(in super::super) fn map_both_before(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        if !R::AMOUNTS_AT_PARTICLES {
+        if !R::Mass::OF_PARTICLES {
             self.fit_momenta(true);
         }
         self.divide_both(dt, forcing, true);
@@ -39,7 +40,7 @@ where
         }
         let share = self.share_of_drag(dt);
         hold_velocities([&mut self.dofs, &mut self.liquid], &self.drag, walls, share);
-        if R::PARTICLE_MATRIX {
+        if R::Mass::IN_ACCELERATION {
             self.seal_mapped_jointly();
         } else {
             self.seal_velocities(dt);

@@ -1,5 +1,6 @@
 //! Whether amounts are kept.
 
+use crate::mass::MassModel;
 use crate::particles::Bins;
 use crate::reconstruction::{Cloud, Reconstruction};
 use crate::scalar::Scalar;
@@ -24,7 +25,7 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
         });
     });
     in_cells(cloud, &stream)?;
-    if R::AMOUNTS_AT_PARTICLES {
+    if R::Mass::OF_PARTICLES {
         are_particles(cloud, &stream, amount)?;
     }
     cells(cloud, &stream, amount).judge(Property::ConservesAmounts, claimed)

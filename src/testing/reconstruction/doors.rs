@@ -4,7 +4,8 @@
 use nalgebra::SVector;
 
 use super::stream::{Streamed, collect, largest_response, relative_error, uneven};
-use crate::reconstruction::{Cloud, Kept, Point, Reconstruction};
+use crate::mass::MassModel;
+use crate::reconstruction::{Cloud, Kept, Point, Reconstruction, Streams};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Plain};
 use crate::testing::failure::{Failure, Place, Property, near};
@@ -13,7 +14,7 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     reconstruction: &mut R,
     cloud: &Cloud<'_, T, D>,
 ) -> Result<(), Failure> {
-    if !R::CELLWISE {
+    if !R::Points::IN_CELLS {
         return Ok(());
     }
     let size = largest_response(reconstruction, cloud);
@@ -21,18 +22,18 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     let places = cloud.bins.occupied().len();
     let whole = collect(reconstruction, cloud, uneven);
     reconstruction.prepare(cloud);
-    reconstruction.fit_field(cloud, &uneven::<T>);
+    R::Points::take_in_field(reconstruction, cloud, &uneven::<T>);
     let mut cells = Vec::new();
     // In two parts, the later one first, as threads may take them.
     for part in [places / 2..places, 0..places / 2] {
-        reconstruction.integrate_cells(cloud, part, uneven, keep(&mut cells));
+        R::Points::cells(reconstruction, cloud, part, uneven, keep(&mut cells));
     }
     same(Property::CellsStreamTheSame, cloud, whole.clone(), cells, most)?;
-    if R::BATCHED {
+    if R::Points::IN_FOURS {
         let four = batched(reconstruction, cloud, false, &uneven);
         same(Property::FourStreamTheSame, cloud, whole, four, most)?;
     }
-    if R::AMOUNTS_AT_PARTICLES {
+    if R::Mass::OF_PARTICLES {
         return Ok(());
     }
     conserved(reconstruction, cloud)
@@ -49,12 +50,12 @@ fn conserved<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     reconstruction.integrate_conserved(cloud, amount, keep(&mut whole));
     let places = cloud.bins.occupied().len();
     for part in [places / 2..places, 0..places / 2] {
-        reconstruction.integrate_conserved_cells(cloud, part, amount, keep(&mut cells));
+        R::Points::conserved_cells(reconstruction, cloud, part, amount, keep(&mut cells));
     }
     let largest = |most: T, point: &Streamed<T, D>| most.max(point.weighted.abs());
     let most = whole.iter().fold(T::zero(), largest) * T::lit(4.0);
     same(Property::CellsStreamTheSame, cloud, whole.clone(), cells, most)?;
-    if R::BATCHED {
+    if R::Points::IN_FOURS {
         let four = batched(reconstruction, cloud, true, &density);
         same(Property::FourStreamTheSame, cloud, whole, four, most)?;
     }
@@ -79,13 +80,14 @@ fn batched<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     conserve: bool,
     value: &impl Fn(usize) -> T,
 ) -> Vec<Streamed<T, D>> {
-    let line: Vec<T> = reconstruction.line().collect();
+    let line: Vec<T> = R::Points::line(reconstruction).collect();
     let occupied = cloud.bins.occupied();
     let mut points = Vec::new();
     for first in (0..occupied.len()).step_by(LANES) {
         let places = first..occupied.len().min(first + LANES);
         let mut lanes_of_points: Vec<(usize, [T; LANES])> = Vec::new();
-        let outcome = reconstruction.integrate_batch::<Plain, T>(
+        let outcome = R::Points::integrate_batch::<Plain, T>(
+            reconstruction,
             Plain,
             (cloud, places.clone()),
             conserve,
@@ -96,7 +98,14 @@ fn batched<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
         for (lane, place) in places.enumerate() {
             let number = occupied[place] as usize;
             if outcome.hard[lane] {
-                reconstruction.integrate_single(cloud, number, conserve, value, &mut keep(&mut points));
+                R::Points::integrate_single(
+                    reconstruction,
+                    cloud,
+                    number,
+                    conserve,
+                    value,
+                    &mut keep(&mut points),
+                );
                 continue;
             }
             let cell = cloud.grid.cell(number);

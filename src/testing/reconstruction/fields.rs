@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::ReconstructionClaims;
 use super::stream::{Streamed, collect, largest_response, relative_error};
 use crate::grid::{Cell, Grid};
-use crate::reconstruction::{Cloud, Reconstruction};
+use crate::reconstruction::{Cloud, Reconstruction, Streams};
 use crate::scalar::Scalar;
 use crate::testing::failure::{Failure, Place, Property};
 use crate::testing::worst::Worst;
@@ -63,9 +63,9 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
 ) -> Result<(), Failure> {
     let weights = collect(reconstruction, cloud, |_| T::one());
     let response = largest_response(reconstruction, cloud);
-    let streams = Streams { weights, response };
+    let streams = Responses { weights, response };
     let integrated = claims.integrates.map_or(0, |degree| degree + 1);
-    let reproduced = if R::FIELDS_AT_PARTICLES {
+    let reproduced = if R::Points::AT_PARTICLES {
         0
     } else {
         claims.reproduces + 1
@@ -81,7 +81,7 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
             streams.compare_values(cloud, &field, &stream, &mut values);
             streams.compare_integrals(cloud, &field, &stream, &mut integrals);
         }
-        if degree <= reproduced && !R::FIELDS_AT_PARTICLES {
+        if degree <= reproduced && !R::Points::AT_PARTICLES {
             values.judge(Property::Reproduces(degree), degree <= claims.reproduces)?;
         }
         if degree <= integrated {
@@ -93,12 +93,12 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
 }
 
 /// What the stream does to the constant one, and at most to values of size one.
-struct Streams<T, const D: usize> {
+struct Responses<T, const D: usize> {
     weights: Vec<Streamed<T, D>>,
     response: Vec<T>,
 }
 
-impl<T: Scalar, const D: usize> Streams<T, D> {
+impl<T: Scalar, const D: usize> Responses<T, D> {
     /// Weighted values against weight times the field. All fields are of size one.
     fn compare_values(
         &self,

@@ -4,6 +4,8 @@ mod amounts;
 mod doors;
 mod fields;
 mod stream;
+#[cfg(test)]
+mod tests;
 
 use nalgebra::SVector;
 
@@ -45,10 +47,15 @@ pub struct ReconstructionClaims {
 
 /// Checks `reconstruction` on the particles at `positions` with `volumes`, which should be well spread (a fit
 /// through almost coincident points loses digits that this check would count as errors): stream points lie in
-/// their cells and are the same for every field; the particles are streamed where the associated constants
-/// say so; streaming is linear; `prepare` forgets; cells streamed alone ([`Reconstruction::CELLWISE`]) and
-/// four at a time ([`Reconstruction::BATCHED`]) stream the same; weights, conservation, reproduction and
-/// integrals as claimed.
+/// their cells and are the same for every field; the particles are streamed where the points
+/// ([`AtParticles`]) and the mass ([`ParticleMass`], [`ParticleMatrix`]) say so; streaming is linear;
+/// `prepare` forgets; cells streamed alone ([`InCells`]) stream the same; weights, conservation, reproduction
+/// and integrals as claimed.
+///
+/// [`AtParticles`]: crate::reconstruction::AtParticles
+/// [`InCells`]: crate::reconstruction::InCells
+/// [`ParticleMass`]: crate::mass::ParticleMass
+/// [`ParticleMatrix`]: crate::mass::ParticleMatrix
 ///
 /// The cost grows with the square of the number of particles.
 ///

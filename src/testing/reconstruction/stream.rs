@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::Measure;
 use crate::grid::Cell;
 use crate::particles::Bins;
-use crate::reconstruction::{Cloud, Reconstruction};
+use crate::reconstruction::{Cloud, Reconstruction, Streams};
 use crate::scalar::Scalar;
 use crate::testing::failure::{Failure, Place, Property, near};
 
@@ -64,7 +64,7 @@ pub(super) fn check<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     in_cells(cloud, &weights)?;
     let field = collect(reconstruction, cloud, uneven);
     same_points(&weights, &field)?;
-    if R::FIELDS_AT_PARTICLES {
+    if R::Points::AT_PARTICLES {
         are_particles(cloud, &weights, |p| cloud.volumes[p])?;
         are_particles(cloud, &field, |p| uneven::<T>(p) * cloud.volumes[p])?;
     }

@@ -8,7 +8,7 @@ use crate::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use crate::field::{Field, MassMomentum, Symmetric};
 use crate::grid::Grid;
 use crate::particles::{Bins, Domains, lattice};
-use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Stresses, Taylor, Values};
+use crate::reconstruction::{Cloud, Densities, FourCells, Point, Stresses, Taylor, Values};
 use crate::transfer::{
     Fits, Integrand, MassesAndMomenta, Parts, Stress, Sum, Sweep, at_fixed_points, components_of,
 };
