@@ -88,7 +88,7 @@ where
         if const { X::FROM_GRID } {
             return None;
         }
-        if P::FLOWS {
+        if const { P::FLOWS } {
             let geometry = self.eigenvalue_of_unit_density(forcing)?;
             return self.waves().critical_step_of_both(geometry);
         }
@@ -120,7 +120,7 @@ where
         if const { X::FROM_GRID } {
             return None;
         }
-        if R::PLAIN {
+        if const { R::PLAIN } {
             return Some(self.stiffness_bound(forcing));
         }
         let waves = self.stiffness_of_sample(forcing);
@@ -134,7 +134,7 @@ where
 
     fn stiffness_of_sample(&self, forcing: &Forcing<T, D>) -> Option<T> {
         let mut sample = self.sample()?;
-        if P::FLOWS {
+        if const { P::FLOWS } {
             return sample.eigenvalue_of_unit_density(forcing);
         }
         let speed = sample.waves().largest_speed();

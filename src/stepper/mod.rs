@@ -311,10 +311,10 @@ where
             let cells = self.particles.len().min(self.grid.cell_count());
             self.spans.kept.reserve_exact(cells.div_ceil(LANES) * R::KEPT);
         }
-        if R::AMOUNTS_AT_PARTICLES {
+        if const { R::AMOUNTS_AT_PARTICLES } {
             return;
         }
-        if P::FLOWS {
+        if const { P::FLOWS } {
             self.map_both_before(T::zero(), &Forcing::none());
             self.liquid.velocity.fill(SVector::zeros());
         } else {
@@ -410,7 +410,7 @@ where
         if fits || B::TAKES_IN_CELLS {
             self.bins.list(&self.grid);
         }
-        if B::TAKES_IN_CELLS {
+        if const { B::TAKES_IN_CELLS } {
             self.basis.take_in(&self.grid, &self.bins);
         }
         self.spans.refresh(&self.basis, &self.grid, &self.bins, fits);

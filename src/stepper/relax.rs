@@ -41,15 +41,14 @@ where
         };
         if !self.law.remembers() {
             self.reconstruction
-                .relax(&cloud, None, crossed, &mut particles.stress);
+                .relax(&cloud, crossed, &mut particles.stress);
         } else {
             self.relaxed.copy_from_slice(&particles.stress);
-            self.reconstruction
-                .relax(&cloud, None, crossed, &mut self.relaxed);
+            self.reconstruction.relax(&cloud, crossed, &mut self.relaxed);
         }
-        let mass = Some(&particles.mass[..]);
+        let (masses, velocities) = (&particles.mass, &mut particles.velocity);
         self.reconstruction
-            .relax(&cloud, mass, crossed, &mut particles.velocity);
+            .relax_weighted(&cloud, masses, crossed, velocities);
         if self.law.remembers() {
             self.strain_to_relaxed();
         }

@@ -1,10 +1,14 @@
 //! What each stage of a step is for the types of a stepper, but where the file of the stage itself asks them
 //! (`diffusion`, `contact`). The list is in `step`.
+//!
+//! Each choice is an `if const { .. }`: what its other branch calls is then not even compiled. A `match` on
+//! constants, or a condition made of constants at run time, compiles the sweeps of all branches for every
+//! stepper.
 
 use super::acceleration::{Walls, accelerate};
 use super::dofs::MassModel;
 use super::drift::{Matter, move_particles};
-use super::fitted::{DensitiesOfBoth, Fitted, StressAndPressure, densities};
+use super::fitted::{DensitiesOfBoth, Fitted, StressesAndPressures, densities};
 use super::forcing::Forcing;
 use super::kick::kick_particles;
 use super::liquid::UniformLoad;
@@ -98,12 +102,16 @@ where
         if const { P::FLOWS } {
             self.find_seals(forcing);
         }
-        match const { (R::PLAIN, P::FLOWS, R::AMOUNTS_AT_PARTICLES) } {
-            (true, false, _) => self.sum::<1, 0, 1>(even),
-            (true, true, _) => self.sum::<3, 2, 2>(even),
-            (false, false, _) => self.sum::<1, 0, 0>(even),
-            (false, true, false) => self.sum::<3, 0, 0>(even),
-            (false, true, true) => self.sum::<3, 2, 0>(even),
+        if const { R::PLAIN && P::FLOWS } {
+            self.sum::<3, 2, 2>(even);
+        } else if const { R::PLAIN } {
+            self.sum::<1, 0, 1>(even);
+        } else if const { P::FLOWS && R::AMOUNTS_AT_PARTICLES } {
+            self.sum::<3, 2, 0>(even);
+        } else if const { P::FLOWS } {
+            self.sum::<3, 0, 0>(even);
+        } else {
+            self.sum::<1, 0, 0>(even);
         }
         if const { R::PARTICLE_MATRIX } {
             self.assemble_matrices();
@@ -162,10 +170,16 @@ where
             batched,
         };
         let forces = [&mut self.dofs.force[..], &mut self.liquid.force[..]];
-        // Three closures rather than one with branches: what a closure holds costs instructions even where it
-        // is not used.
+        // Three kinds of values rather than one with branches: what a closure holds costs instructions even
+        // where it is not used. And none that is a closure of this function, for which all fits would be
+        // compiled once more: it is generic in all that a stepper is made of.
         if const { P::FLOWS } {
-            let rest = |p: usize| -> StressAndPressure<T, D> { even.rest(phase, &effective[p], &data[p]) };
+            let rest = StressesAndPressures {
+                even,
+                phase,
+                effective,
+                data,
+            };
             fitted.forces::<2>(rest, Targets::<T, D, 0, 0, 2>::of_forces(forces));
         } else if const { P::COUPLED } {
             let total = |p: usize| Symmetric(phase.total_stress(&effective[p], &data[p]));
@@ -208,11 +222,14 @@ where
     /// Velocities of the particles, and the momenta of the DOFs where those of the particles are simply
     /// summed.
     pub(super) fn kick_particles(&mut self, dt: T) -> Totals<T, D> {
-        match const { (P::FLOWS, R::AMOUNTS_AT_PARTICLES && !R::RELAXES) } {
-            (false, false) => self.kick_phases::<1, 0>(dt),
-            (false, true) => self.kick_phases::<1, 1>(dt),
-            (true, false) => self.kick_phases::<2, 0>(dt),
-            (true, true) => self.kick_phases::<2, 2>(dt),
+        if const { P::FLOWS && R::AMOUNTS_AT_PARTICLES && !R::RELAXES } {
+            self.kick_phases::<2, 2>(dt)
+        } else if const { P::FLOWS } {
+            self.kick_phases::<2, 0>(dt)
+        } else if const { R::AMOUNTS_AT_PARTICLES && !R::RELAXES } {
+            self.kick_phases::<1, 1>(dt)
+        } else {
+            self.kick_phases::<1, 0>(dt)
         }
     }
 
@@ -241,11 +258,12 @@ where
 
     /// Momenta and masses of the DOFs; returns their totals, of both phases.
     pub(super) fn map_momenta(&mut self) -> [MassMomentum<T, D>; 2] {
-        match const { (R::AMOUNTS_AT_PARTICLES, R::RELAXES, P::FLOWS) } {
-            (true, false, _) => {}
-            (true, true, false) => self.sum_momenta::<1>(),
-            (true, true, true) => self.sum_momenta::<2>(),
-            (false, _, _) => self.fit_momenta(!P::FLOWS),
+        if const { !R::AMOUNTS_AT_PARTICLES } {
+            self.fit_momenta(!P::FLOWS);
+        } else if const { R::RELAXES && P::FLOWS } {
+            self.sum_momenta::<2>();
+        } else if const { R::RELAXES } {
+            self.sum_momenta::<1>();
         }
         self.mapped_totals()
     }
@@ -260,9 +278,10 @@ where
 
     /// Momenta and masses of the DOFs of the solid alone, from the velocities as they are.
     pub(super) fn map_solid(&mut self) {
-        match const { R::AMOUNTS_AT_PARTICLES } {
-            true => self.sum_momenta::<1>(),
-            false => self.fit_momenta(true),
+        if const { R::AMOUNTS_AT_PARTICLES } {
+            self.sum_momenta::<1>();
+        } else {
+            self.fit_momenta(true);
         }
     }
 

@@ -380,6 +380,15 @@ impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usi
         }
     }
 
+    /// What adds the sum of a DOF. It holds the slices by value: references to them would be read anew for
+    /// each DOF. A closure has the type parameters of the function that it stands in, and what it is handed
+    /// to is compiled for each: this one has those of its sums only.
+    #[inline(always)]
+    pub(super) fn into_sink(mut self) -> impl FnMut(usize, Sum<T, D, S, C, G>) {
+        #[inline(always)]
+        move |dof, sum| self.add(dof, sum)
+    }
+
     /// Adds the sum of a DOF; what tensors give with gradients is taken off: forces.
     #[inline(always)]
     pub(super) fn add(&mut self, dof: usize, sum: Sum<T, D, S, C, G>) {
@@ -488,7 +497,7 @@ fn sum_amounts<T, const D: usize, B, P, const S: usize, const C: usize, const G:
         (data, liquid),
         windows,
     )| {
-        let mut sums = InSpan::new(windows);
+        let sums = InSpan::new(windows);
         let amounts = Amounts {
             masses,
             volumes,
@@ -499,7 +508,7 @@ fn sum_amounts<T, const D: usize, B, P, const S: usize, const C: usize, const G:
             liquid_masses: liquid.0,
             even,
         };
-        p2g(basis, grid, sites, amounts, move |dof, sum| sums.add(dof, sum));
+        p2g(basis, grid, sites, amounts, sums.into_sink());
     });
     store.add_up(spans, &mut targets);
 }

@@ -7,6 +7,7 @@ use nalgebra::SVector;
 use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::sums::{Parts, Sum, Sums};
+use super::stencil::{Seer, Stencil};
 use super::{Sites, Sweep};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
@@ -85,23 +86,31 @@ pub(crate) fn kick<
         ));
     }
     let mut totals = [Momentum::zero(); C];
-    let mut sums = StencilSums::new(basis, grid);
+    let (mut stencil, mut sums) = (Stencil::new(), StencilSums::new());
     for (p, place) in sites.cells.iter().zip(sites.positions).enumerate() {
         let mut a = [[T::zero(); D]; C];
-        sites.domains.for_each((basis, grid), p, place, |i, phi, _| {
-            for q in 0..C {
-                for c in 0..D {
-                    a[q][c] += fields[q][i][c] * phi;
+        stencil.for_each(
+            (basis, grid),
+            &sites.domains,
+            Seer::Particle(p),
+            place,
+            #[inline(always)]
+            |i, phi, _| {
+                for q in 0..C {
+                    for c in 0..D {
+                        a[q][c] += fields[q][i][c] * phi;
+                    }
                 }
-            }
-        });
+            },
+        );
         let momenta = what.take::<One, 1, true>(One, Group { first: p, count: 1 }, &a);
         for q in 0..C {
             totals[q].momentum += SVector::from(momenta[q]);
             totals[q].scale += size(&momenta[q]);
         }
         if M > 0 {
-            sums.add((p, place), &sites.domains, &parts(&momenta), None, &mut sink);
+            let space = (basis, grid, &mut stencil);
+            sums.add(space, (p, place), &sites.domains, &parts(&momenta), None, &mut sink);
         }
     }
     if M > 0 {

@@ -23,7 +23,7 @@ use crate::basis::BasisFamily;
 use crate::field::Field;
 use crate::parallel::CELLS;
 use crate::scalar::Scalar;
-use crate::simd::{LANES, Packs, dispatch};
+use crate::simd::{LANES, Packs};
 use crate::taylor::{FEW_COMPONENTS, MOST_COMPONENTS, are_few, default_tolerance};
 use cells::{Kind, RelaxedCell};
 use four::{FourFits, KeptProducts};
@@ -229,7 +229,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
         value: impl Fn(usize) -> Q,
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        dispatch!(T, |k| self.integrate_in(k, cloud, cells, &value, &mut sink));
+        self.integrate_each(cloud, cells, &value, &mut sink);
     }
 
     fn line(&self) -> impl Iterator<Item = T> {
@@ -313,14 +313,20 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     fn relax<Q: Field<T>>(
         &mut self,
         cloud: &Cloud<'_, T, D>,
-        weights: Option<&[T]>,
         crossed: &[CourantNumbers<T>],
         values: &mut [Q],
     ) {
-        match weights {
-            None => self.relax_towards_both(cloud, crossed, values),
-            Some(weights) => self.relax_towards_own(cloud, weights, crossed, values),
-        }
+        self.relax_towards_both(cloud, crossed, values);
+    }
+
+    fn relax_weighted<Q: Field<T>>(
+        &mut self,
+        cloud: &Cloud<'_, T, D>,
+        weights: &[T],
+        crossed: &[CourantNumbers<T>],
+        values: &mut [Q],
+    ) {
+        self.relax_towards_own(cloud, weights, crossed, values);
     }
 
     fn filling(&self, place: usize) -> Filling {

@@ -44,10 +44,9 @@ where
             cuts: &self.cuts,
         };
         let reconstruction = &mut self.reconstruction;
-        reconstruction.relax(&cloud, None, crossed, state);
-        reconstruction.relax(&cloud, Some(&liquid_mass[..]), crossed, liquid_velocity);
-        let mass = Some(&particles.mass[..]);
-        reconstruction.relax(&cloud, mass, crossed, &mut particles.velocity);
+        reconstruction.relax(&cloud, crossed, state);
+        reconstruction.relax_weighted(&cloud, liquid_mass, crossed, liquid_velocity);
+        reconstruction.relax_weighted(&cloud, &particles.mass, crossed, &mut particles.velocity);
         self.take_in_relaxed();
     }
 

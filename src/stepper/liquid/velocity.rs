@@ -24,7 +24,7 @@ where
     /// DOF velocities of both phases at the step's start. The masses of the mapping serve again after the
     /// update: nothing has moved by then.
     pub(in super::super) fn map_both_before(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        if !R::AMOUNTS_AT_PARTICLES {
+        if const { !R::AMOUNTS_AT_PARTICLES } {
             self.fit_momenta(true);
         }
         self.divide_both(dt, forcing, true);
@@ -39,7 +39,7 @@ where
         }
         let share = self.share_of_drag(dt);
         hold_velocities([&mut self.dofs, &mut self.liquid], &self.drag, walls, share);
-        if R::PARTICLE_MATRIX {
+        if const { R::PARTICLE_MATRIX } {
             self.seal_mapped_jointly();
         } else {
             self.seal_velocities(dt);
