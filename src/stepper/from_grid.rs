@@ -46,7 +46,7 @@ where
         } else {
             self.map_solid();
         }
-        let mapped = [&self.dofs, &self.liquid].map(|dofs| dofs.mapped_totals(self.mass));
+        let mapped = self.mapped_totals();
         self.record(&before, mapped);
         let walls = Walls::of_solid(&self.face_dofs, forcing);
         kick_dofs(&mut self.dofs, dt, &walls, &mut self.balance);

@@ -84,8 +84,9 @@ where
         }
         self.particles.validate_with(self.law.numbers())?;
         refuse_unknown_stress(&self.law, &self.particles)?;
-        refuse_without_capacity(&self.phase, &self.particles, |place| self.order.number(place))?;
-        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, |place| self.order.number(place))?;
+        let number = |place| self.order.number(place);
+        refuse_without_capacity(&self.phase, &self.particles, &number)?;
+        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, &number)?;
         let positions = &self.particles.position;
         self.bins =
             Bins::without_lists(&self.grid, positions).map_err(|Outside(place)| SetupError::Outside {

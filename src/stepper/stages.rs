@@ -15,7 +15,7 @@ use super::liquid::UniformLoad;
 use super::spans::{Fault, Totals};
 use super::sums::{Targets, first, sum_particles};
 use super::velocity::divide_by_mass;
-use super::{Stepper, cloud};
+use super::{Stepper, cloud, left};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::field::{MassMomentum, Symmetric};
@@ -139,20 +139,20 @@ where
 
     /// Counts crossings; the error is that of the first particle at fault.
     fn account_for_moves(&mut self) -> Result<(), StepError> {
-        let moved = &self.spans.moved;
-        let crossings = moved.iter().map(|span| span.crossings).sum();
-        let fault = moved.iter().find_map(|span| span.fault);
-        self.strayed |= moved.iter().any(|span| span.strayed);
+        let (crossings, strayed, fault) = self.spans.sum_moves();
+        self.strayed |= strayed;
         self.diagnostics.grid_crossings += crossings;
         self.bins.note_crossings(crossings);
         self.order.note_crossings(crossings);
-        self.spans.stale |= crossings > 0;
         match fault {
             None => Ok(()),
             Some(Fault::Material(p, flaw)) => {
                 Err(flaw.error(self.steps, self.order.number(p), self.law.limits()))
             }
-            Some(Fault::Left(p)) => Err(self.left(p)),
+            Some(Fault::Left(p)) => {
+                let position = &self.particles.position[p];
+                Err(left(self.steps, self.order.number(p), position))
+            }
         }
     }
 
@@ -341,8 +341,9 @@ where
     }
 
     /// Total mass and momentum of the DOFs, of both phases.
-    fn mapped_totals(&self) -> [MassMomentum<T, D>; 2] {
-        [&self.dofs, &self.liquid].map(|dofs| dofs.mapped_totals(self.mass))
+    pub(super) fn mapped_totals(&self) -> [MassMomentum<T, D>; 2] {
+        // No `map` of arrays: for a closure of this function it would be compiled for every stepper.
+        [self.dofs.mapped_totals(self.mass), self.liquid.mapped_totals(self.mass)]
     }
 
     /// Compares what was mapped with what the particles have.

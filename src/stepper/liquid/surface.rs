@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::super::acceleration::Walls;
+use super::super::forces::{add_load, each_seen};
 use super::super::{FaceCondition, Forcing, PoreCondition, Stepper, SurfacePoint};
 use super::seal::{Answer, Place, Seal};
 use crate::basis::BasisFamily;
@@ -120,11 +121,11 @@ where
                 PoreCondition::Sealed => T::zero(),
             };
             let (cell, x) = self.loaded_place(point);
-            let (whole, liquid) = (&mut self.dofs.force, &mut self.liquid.force);
-            self.basis.for_each(&self.grid, &cell, &x, |i, phi, _| {
-                whole[i] += load * (area * phi);
-                liquid[i][axis] += pressure * area * phi;
-            });
+            let mut on_liquid = SVector::zeros();
+            on_liquid[axis] = pressure * area;
+            let (space, place) = ((&self.basis, &self.grid), (&cell, &x));
+            add_load(space, place, &(load * area), &mut self.dofs.force);
+            add_load(space, place, &on_liquid, &mut self.liquid.force);
         }
     }
 
@@ -148,15 +149,14 @@ where
                 continue;
             }
             let x = self.surface_position(point);
-            let (basis, grid) = (&self.basis, &self.grid);
+            let space = (&self.basis, &self.grid);
             let place = Place {
                 face: point.face,
                 layer,
                 shape,
             };
-            self.seal.add_point(&place, point.area, &mut |add| {
-                basis.for_each(grid, cell, &x, |i, phi, _| add(i, phi));
-            });
+            self.seal
+                .add_point(&place, point.area, &mut |add| each_seen(space, (cell, &x), add));
         }
         number_components(&mut self.seal, Walls::of_both(&self.face_dofs, forcing));
     }
