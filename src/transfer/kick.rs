@@ -170,7 +170,7 @@ fn in_packs<
     each_group(cells, &mut groups);
     let (momenta, scales) = (groups.momenta, groups.scales);
     if M > 0 {
-        groups.sums.flush(k, sweep, &mut groups.sink);
+        groups.sums.end(k, sweep, &mut groups.sink);
     }
     let mut totals = [Momentum::zero(); C];
     for q in 0..C {

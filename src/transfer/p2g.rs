@@ -103,7 +103,7 @@ fn in_packs<
         sink,
     };
     each_group(cells, &mut groups);
-    groups.sums.flush(k, sweep, &mut groups.sink);
+    groups.sums.end(k, sweep, &mut groups.sink);
 }
 
 /// The sweep over the groups.
