@@ -42,7 +42,13 @@ pub(super) fn validate<T: Scalar, const D: usize, B: BasisFamily<T, D>, S, P>(
     particles: &Particles<T, D, S, P>,
     number: &dyn Fn(usize) -> usize,
 ) -> Result<(), SetupError> {
-    validate_kind(B::DOMAIN, grid, &particles.domains, particles.position.len(), number)
+    validate_kind(
+        B::DOMAIN,
+        grid,
+        &particles.domains,
+        particles.position.len(),
+        number,
+    )
 }
 
 /// The same for the domains that a basis asks for: compiled for no basis.

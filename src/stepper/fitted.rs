@@ -125,7 +125,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             let cells = place..place + cells.len();
             if const { transfer::fit::<T, D, B, R>() } && batched {
                 let fits = Fits {
-                    moving: &|point, stencil, skip| at_moving_point((basis, cloud, domains), point, stencil, skip),
+                    moving: &|point, stencil, skip| {
+                        at_moving_point((basis, cloud, domains), point, stencil, skip)
+                    },
                     reconstruction,
                     cloud,
                     cells,
@@ -244,7 +246,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             let mut matrix = into_rows(rows, first, half_band);
             if const { transfer::fit::<T, D, B, R>() } && batched {
                 let fits = Fits {
-                    moving: &|point, stencil, skip| at_moving_point((basis, cloud, domains), point, stencil, skip),
+                    moving: &|point, stencil, skip| {
+                        at_moving_point((basis, cloud, domains), point, stencil, skip)
+                    },
                     reconstruction,
                     cloud,
                     cells,
@@ -296,7 +300,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         let mut matrix = into_matrices(matrices);
         if const { transfer::fit::<T, D, B, R>() } && self.batched {
             let fits = Fits {
-                moving: &|point, stencil, skip| at_moving_point((basis, cloud, domains), point, stencil, skip),
+                moving: &|point, stencil, skip| {
+                    at_moving_point((basis, cloud, domains), point, stencil, skip)
+                },
                 reconstruction: &*self.reconstruction,
                 cloud,
                 cells: 0..cloud.bins.occupied().len(),
@@ -379,7 +385,14 @@ fn at_moving_point<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     skip: usize,
 ) -> usize {
     let place = (&point.cell, &point.position);
-    look_up(stencil, (basis, cloud.grid), &domains, seer_of(point), place, skip)
+    look_up(
+        stencil,
+        (basis, cloud.grid),
+        &domains,
+        seer_of(point),
+        place,
+        skip,
+    )
 }
 
 /// Who looks up functions at a point.

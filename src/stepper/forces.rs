@@ -64,7 +64,12 @@ where
             let (cell, x) = self.loaded_place(point);
             let load = traction * point.area;
             self.balance.load += load;
-            add_load((&self.basis, &self.grid), (&cell, &x), &load, &mut self.dofs.force);
+            add_load(
+                (&self.basis, &self.grid),
+                (&cell, &x),
+                &load,
+                &mut self.dofs.force,
+            );
         }
     }
 }

@@ -40,8 +40,7 @@ where
             cuts: &self.cuts,
         };
         if !self.law.remembers() {
-            self.reconstruction
-                .relax(&cloud, crossed, &mut particles.stress);
+            self.reconstruction.relax(&cloud, crossed, &mut particles.stress);
         } else {
             self.relaxed.copy_from_slice(&particles.stress);
             self.reconstruction.relax(&cloud, crossed, &mut self.relaxed);

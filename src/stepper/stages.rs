@@ -343,7 +343,10 @@ where
     /// Total mass and momentum of the DOFs, of both phases.
     pub(super) fn mapped_totals(&self) -> [MassMomentum<T, D>; 2] {
         // No `map` of arrays: for a closure of this function it would be compiled for every stepper.
-        [self.dofs.mapped_totals(self.mass), self.liquid.mapped_totals(self.mass)]
+        [
+            self.dofs.mapped_totals(self.mass),
+            self.liquid.mapped_totals(self.mass),
+        ]
     }
 
     /// Compares what was mapped with what the particles have.

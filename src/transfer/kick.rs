@@ -6,8 +6,8 @@ use nalgebra::SVector;
 
 use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
-use super::sums::{Parts, Sum, Sums};
 use super::stencil::{Seer, Stencil};
+use super::sums::{Parts, Sum, Sums};
 use super::{Sites, Sweep};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
@@ -110,7 +110,14 @@ pub(crate) fn kick<
         }
         if M > 0 {
             let space = (basis, grid, &mut stencil);
-            sums.add(space, (p, place), &sites.domains, &parts(&momenta), None, &mut sink);
+            sums.add(
+                space,
+                (p, place),
+                &sites.domains,
+                &parts(&momenta),
+                None,
+                &mut sink,
+            );
         }
     }
     if M > 0 {

@@ -5,9 +5,9 @@ use nalgebra::SVector;
 use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::places::DofPlaces;
+use super::stencil::Stencil;
 use super::sums::Sums;
 pub(crate) use super::sums::{Parts, Sum};
-use super::stencil::Stencil;
 use super::{Sites, Sweep};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
@@ -68,7 +68,14 @@ pub(crate) fn p2g<
         let group = Group { first: p, count: 1 };
         let parts = what.parts::<One, 1, true>(One, group, &slopes);
         let space = (basis, grid, &mut stencil);
-        sums.add(space, (p, place), &sites.domains, &parts, what.places(), &mut sink);
+        sums.add(
+            space,
+            (p, place),
+            &sites.domains,
+            &parts,
+            what.places(),
+            &mut sink,
+        );
     }
     sums.flush(&mut sink);
 }

@@ -91,7 +91,13 @@ where
         let width = 1 + self.basis.half_band(&self.grid);
         let most = 16 * width * (self.dof_count() + self.particles.len());
         let places = (&mut self.surface[..], &mut self.bins, &mut self.order);
-        restore_places(&mut from, places, (&self.grid, self.strayed), &mut self.spans, most)
+        restore_places(
+            &mut from,
+            places,
+            (&self.grid, self.strayed),
+            &mut self.spans,
+            most,
+        )
     }
 
     /// What two steppers must have in common.
