@@ -87,7 +87,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         I: Integrand<T, D, S, C, G, 0>,
     {
         let (basis, cloud, domains) = (self.basis, &self.cloud, self.domains);
-        let amount = |p: usize| amount_of(value.at(p), I::CONSERVED, cloud.volumes[p]);
+        let amount = amounts(value, I::CONSERVED, cloud.volumes);
         if const { !R::CELLWISE } {
             let sums = InSpan::whole(targets);
             let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, sums);
@@ -185,7 +185,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
     {
         let (basis, cloud, domains) = (self.basis, &self.cloud, self.domains);
         let width = half_band + 1;
-        let amount = |p: usize| amount_of(densities.at(p), true, cloud.volumes[p]);
+        let amount = amounts(densities, true, cloud.volumes);
         let mut momenta = [const { None }; C];
         let mut bands = [const { None }; C];
         for (q, dofs) in dofs.into_iter().enumerate() {
@@ -318,7 +318,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             );
             return;
         }
-        let amount = |p: usize| amount_of(densities.at(p), true, cloud.volumes[p]);
+        let amount = amounts(densities, true, cloud.volumes);
         let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, sink, matrix);
         self.reconstruction.integrate_conserved(cloud, amount, sink);
     }
@@ -339,10 +339,19 @@ fn room<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     }
 }
 
-/// A value, or the amount that a particle of this volume holds of a density.
+/// Values of the particles, or the amounts that particles of these volumes hold of a density. A function of
+/// what it uses, as [`InSpan::into_sink`].
 #[inline(always)]
-fn amount_of<T: Scalar, Q: Field<T>>(value: Q, conserved: bool, volume: T) -> Q {
-    if conserved { value.scaled(volume) } else { value }
+fn amounts<'a, T: Scalar, Q: Field<T>>(
+    value: &'a (impl Values<T, Q> + Copy + Sync),
+    conserved: bool,
+    volumes: &'a [T],
+) -> impl Fn(usize) -> Q + Copy + Sync + 'a {
+    #[inline(always)]
+    move |p| {
+        let value = value.at(p);
+        if conserved { value.scaled(volumes[p]) } else { value }
+    }
 }
 
 /// Where masses go that are for no matrix.

@@ -378,12 +378,12 @@ where
 }
 
 /// Refuses walls whose impulses go to the particles.
-pub(super) fn refuse_walls_that_rub<T: Scalar, const D: usize, X: Transfer<T, D>>(
+pub(super) fn refuse_walls_that_rub<T: Scalar, const D: usize>(
     forcing: &Forcing<T, D>,
 ) -> Result<(), StepError> {
     let rubs = |face: &Face| matches!(forcing.face(*face), FaceCondition::Frictional { .. });
     match Face::all::<D>().find(rubs) {
-        Some(face) if const { X::FROM_GRID } => Err(StepError::FrictionFromGrid { face }),
-        _ => Ok(()),
+        Some(face) => Err(StepError::FrictionFromGrid { face }),
+        None => Ok(()),
     }
 }

@@ -349,15 +349,8 @@ where
         forcing: &Forcing<T, D>,
         measure: bool,
     ) -> Result<Energy<T>, StepError> {
-        for size in [dt, kick] {
-            if !size.is_finite() || size <= T::zero() {
-                let value = size.primal();
-                return Err(StepError::StepSize { value });
-            }
-        }
-        forcing.suits_phase([P::FLOWS, P::DIFFUSES])?;
-        from_grid::refuse_walls_that_rub::<T, D, X>(forcing)?;
-        faces::walls_can_be_held(forcing, &self.left_out)?;
+        let kinds = [P::FLOWS, P::DIFFUSES, X::FROM_GRID];
+        refuse_bad_step([kick, dt], forcing, kinds, &self.left_out)?;
         let mut outcome = Ok(Energy::none());
         within_pool(self.is_worth_sending(), &mut || {
             outcome = self.step_here([kick, dt], forcing, measure);
@@ -443,7 +436,7 @@ where
     /// Finds where surfaces cut cells, in one dimension.
     fn cut_cells(&mut self) {
         self.cuts.clear();
-        if D > 1 {
+        if const { D > 1 } {
             return;
         }
         for point in &self.surface {
@@ -713,6 +706,28 @@ fn refuse_unknown_stress<T: Scalar, const D: usize, L: LawSweep<T, D>, P>(
             allowed: law.limits(),
         }),
     }
+}
+
+/// Refuses sizes of a step that make no sense, and conditions that a liquid that flows, a phase that diffuses
+/// or a transfer from the grid does not know.
+#[inline(never)]
+fn refuse_bad_step<T: Scalar, const D: usize>(
+    [kick, dt]: [T; 2],
+    forcing: &Forcing<T, D>,
+    [flows, diffuses, from_grid]: [bool; 3],
+    left_out: &[Option<usize>],
+) -> Result<(), StepError> {
+    for size in [dt, kick] {
+        if !size.is_finite() || size <= T::zero() {
+            let value = size.primal();
+            return Err(StepError::StepSize { value });
+        }
+    }
+    forcing.suits_phase([flows, diffuses])?;
+    if from_grid {
+        from_grid::refuse_walls_that_rub(forcing)?;
+    }
+    faces::walls_can_be_held(forcing, left_out)
 }
 
 /// The error of a particle that left the grid, of which number and place are known.

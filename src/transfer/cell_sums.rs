@@ -91,10 +91,9 @@ impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usi
     /// Hands the sums over and starts again.
     #[inline(always)]
     pub(super) fn flush(&mut self, sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>)) {
-        let kept = self.dofs.iter().zip(&mut self.sums);
-        for (&dof, sum) in kept.take(self.count) {
-            sink(dof, *sum);
-            *sum = Sum::zero();
+        for k in 0..self.count.min(AT_HAND) {
+            sink(self.dofs[k], self.sums[k]);
+            self.sums[k] = Sum::zero();
         }
         self.count = 0;
         self.cell = None;

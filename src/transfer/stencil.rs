@@ -77,9 +77,8 @@ impl<T: Scalar, const D: usize> Stencil<T, D> {
         let mut skip = 0;
         loop {
             let rest = look_up(self, skip).saturating_sub(skip);
-            let all = self.dofs.iter().zip(&self.values).zip(&self.gradients);
-            for ((&dof, &phi), &gradient) in all.take(rest) {
-                f(dof, phi, gradient);
+            for n in 0..rest.min(AT_ONCE) {
+                f(self.dofs[n], self.values[n], self.gradients[n]);
             }
             if rest <= AT_ONCE {
                 return;
@@ -112,10 +111,10 @@ impl<T: Scalar, const D: usize> Stencil<T, D> {
         }
         // The functions of a product are few enough to be found at once.
         let count = look_up(self, (basis, grid), &none, seer, (cell, x), 0).min(AT_ONCE);
-        for (&i, &phi) in self.dofs.iter().zip(&self.values).take(count) {
-            for (&j, &other) in self.dofs.iter().zip(&self.values).take(count) {
-                if j <= i {
-                    f([i, j], [phi, other]);
+        for n in 0..count {
+            for m in 0..count {
+                if self.dofs[m] <= self.dofs[n] {
+                    f([self.dofs[n], self.dofs[m]], [self.values[n], self.values[m]]);
                 }
             }
         }

@@ -87,22 +87,10 @@ where
     /// that particles as quadrature points are exact there; a point load against their sum is not. Beyond one
     /// dimension no even state fits a load, and none is taken.
     pub(in super::super) fn uniform_load(&self, forcing: &Forcing<T, D>) -> UniformLoad<T> {
-        let mut even = UniformLoad::none();
-        if D > 1 || !P::FLOWS {
-            return even;
+        if const { D > 1 || !P::FLOWS } {
+            return UniformLoad::none();
         }
-        let free = |point: &&SurfacePoint<T>| !is_held(forcing, point);
-        if let Some(point) = self.surface.iter().find(free) {
-            even.stress = traction(forcing, point)[0] * point.outward();
-        }
-        let pressures = self.surface.iter().map(|point| forcing.pores(point.face));
-        for condition in pressures {
-            if let PoreCondition::Pressure(pressure) = condition {
-                even.pressure = pressure;
-                break;
-            }
-        }
-        even
+        uniform_load(&self.surface, forcing)
     }
 
     /// What loads the surfaces besides the even part: tractions on the whole, pressures on the liquid where
@@ -187,6 +175,26 @@ where
             Drag::Explicit => T::zero(),
         }
     }
+}
+
+#[inline(never)]
+fn uniform_load<T: Scalar, const D: usize>(
+    surface: &[SurfacePoint<T>],
+    forcing: &Forcing<T, D>,
+) -> UniformLoad<T> {
+    let mut even = UniformLoad::none();
+    let free = |point: &&SurfacePoint<T>| !is_held(forcing, point);
+    if let Some(point) = surface.iter().find(free) {
+        even.stress = traction(forcing, point)[0] * point.outward();
+    }
+    let pressures = surface.iter().map(|point| forcing.pores(point.face));
+    for condition in pressures {
+        if let PoreCondition::Pressure(pressure) = condition {
+            even.pressure = pressure;
+            break;
+        }
+    }
+    even
 }
 
 /// Numbers what the points of the seals look at, and notes what walls hold of it.
