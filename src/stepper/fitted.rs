@@ -350,7 +350,11 @@ fn amounts<'a, T: Scalar, Q: Field<T>>(
     #[inline(always)]
     move |p| {
         let value = value.at(p);
-        if conserved { value.scaled(volumes[p]) } else { value }
+        if conserved {
+            value.scaled(volumes[p])
+        } else {
+            value
+        }
     }
 }
 
