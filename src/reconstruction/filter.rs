@@ -53,15 +53,25 @@ pub(crate) mod sealed {
         /// Whether anything is filtered.
         const FILTERS: bool = false;
 
-        /// Moves the particles' `values` towards what the reconstruction sees of them; `weights` (masses)
-        /// make the fit keep the weighted sum. `crossed` says for each occupied cell which part of it a wave
-        /// and its particles cross in this step: the measures of time for a relaxation. Asked for the stress,
-        /// unweighted, right after the force is assembled (a law with a state is then strained towards the
-        /// moved stress), and for the velocity, weighted, before it is mapped to the DOFs.
+        /// Moves the particles' `values` towards what the reconstruction sees of them. `crossed` says for
+        /// each occupied cell which part of it a wave and its particles cross in this step: the measures of
+        /// time for a relaxation. Asked for the stress right after the force is assembled; a law with a state
+        /// is then strained towards the moved stress.
         fn relax<Q: Field<T>>(
             _reconstruction: &mut R,
             _cloud: &Cloud<'_, T, D>,
-            _weights: Option<&[T]>,
+            _crossed: &[CourantNumbers<T>],
+            _values: &mut [Q],
+        ) {
+            const { assert!(!Self::FILTERS) };
+        }
+
+        /// The same by a fit that keeps the sum weighted with `weights` (masses). Asked for the velocity,
+        /// before it is mapped to the DOFs.
+        fn relax_weighted<Q: Field<T>>(
+            _reconstruction: &mut R,
+            _cloud: &Cloud<'_, T, D>,
+            _weights: &[T],
             _crossed: &[CourantNumbers<T>],
             _values: &mut [Q],
         ) {

@@ -289,7 +289,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         cell: Occupied<'_, T, D, NB>,
         value: &impl Fn(usize) -> Q,
     ) -> [Q; NB] {
-        if D == 1 && cell.fits.lent.to_free() {
+        if const { D == 1 } && cell.fits.lent.to_free() {
             return self.free_with_lent(cloud, cell.place, value);
         }
         free(cell.fits, cloud, cell.number, value)
@@ -303,7 +303,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         cell: Occupied<'_, T, D, NB>,
         amount: &impl Fn(usize) -> Q,
     ) -> [Q; NB] {
-        if D == 1 && cell.fits.lent.to_conserved() {
+        if const { D == 1 } && cell.fits.lent.to_conserved() {
             return self.conserved_with_lent(cloud, cell.place, amount);
         }
         conserved(cell.fits, cloud, cell.number, amount)
@@ -336,7 +336,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         value: &impl Fn(usize) -> Q,
         mean: &impl Fn(&Cell<D>) -> Q,
     ) -> [Q; NB] {
-        if D == 1 && cell.fits.lent.to_conserved() {
+        if const { D == 1 } && cell.fits.lent.to_conserved() {
             return self.about_mean_with_lent(cloud, cell.place, value, mean);
         }
         let mean = mean(&cell.fits.patch.cell);
@@ -684,7 +684,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Taylor
         );
         self.reduced = self.cells.iter().filter(|fits| !fits.is_full()).count();
         self.lent = 0;
-        if D == 1 && self.virtual_points && self.reduced > 0 {
+        if const { D == 1 } && self.virtual_points && self.reduced > 0 {
             self.lend(cloud);
         }
     }

@@ -5,11 +5,12 @@ use nalgebra::SVector;
 use super::Stepper;
 use super::order::Order;
 use crate::basis::BasisFamily;
+use crate::grid::Grid;
 use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
-use crate::transfer::Transfer;
+use crate::transfer::{Sites, Transfer};
 
 impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
 where
@@ -31,39 +32,71 @@ where
 
     /// `f_i += sum_p m_p b_p phi_i(x_p)`.
     pub(super) fn add_body_forces(&mut self) {
-        if P::FLOWS {
+        if const { P::FLOWS } {
             return self.add_body_forces_to_both();
         }
-        let (basis, grid, force) = (&self.basis, &self.grid, &mut self.dofs.force);
-        let load = &mut self.balance.load;
-        let sites = self.particles.sites(self.bins.cells());
-        for (place, &mass) in self.particles.mass.iter().enumerate() {
-            let weight = self.body_forces[self.order.number(place)] * mass;
-            *load += weight;
-            sites.for_each(basis, grid, place, |i, phi, _| force[i] += weight * phi);
-        }
+        self.balance.load += add_weights(
+            (&self.basis, &self.grid, self.particles.sites(self.bins.cells())),
+            &self.particles.mass,
+            (&self.body_forces, &self.order),
+            &mut self.dofs.force,
+        );
     }
 
     /// The same of two: the mixture feels `(m_s + n m_w) b`, the liquid, whose balance is per porosity `n`,
     /// feels `m_w b`.
     fn add_body_forces_to_both(&mut self) {
-        let (basis, grid, phase) = (&self.basis, &self.grid, &self.phase);
-        let (whole, liquid) = (&mut self.dofs.force, &mut self.liquid.force);
-        let inverse = T::one() / phase.porosity();
-        let bodies = self.particles.mass.iter().zip(&self.particles.volume);
-        let sites = self.particles.sites(self.bins.cells());
-        for (place, (&solid_mass, &volume)) in bodies.enumerate() {
-            let force = self.body_forces[self.order.number(place)];
-            let liquid_mass = phase.liquid_mass(volume);
-            let (on_whole, on_liquid) = (
-                force * (solid_mass + liquid_mass),
-                force * (liquid_mass * inverse),
-            );
-            sites.for_each(basis, grid, place, |i, phi, _| {
-                whole[i] += on_whole * phi;
-                liquid[i] += on_liquid * phi;
-            });
-        }
+        add_weights_of_both(
+            (&self.basis, &self.grid, self.particles.sites(self.bins.cells())),
+            (&self.particles.mass, &self.particles.volume),
+            &self.phase,
+            (&self.body_forces, &self.order),
+            [&mut self.dofs.force, &mut self.liquid.force],
+        );
+    }
+}
+
+/// Where particles are, and in which functions they are seen.
+type Space<'a, T, const D: usize, B> = (&'a B, &'a Grid<T, D>, Sites<'a, T, D>);
+
+/// Adds the weights of particles, whose forces per mass are given by their numbers; returns their sum.
+#[inline(never)]
+fn add_weights<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    (basis, grid, sites): Space<'_, T, D, B>,
+    masses: &[T],
+    (body_forces, order): (&[SVector<T, D>], &Order),
+    force: &mut [SVector<T, D>],
+) -> SVector<T, D> {
+    let mut load = SVector::zeros();
+    for (place, &mass) in masses.iter().enumerate() {
+        let weight = body_forces[order.number(place)] * mass;
+        load += weight;
+        sites.for_each(basis, grid, place, |i, phi, _| force[i] += weight * phi);
+    }
+    load
+}
+
+/// The same of both phases.
+#[inline(never)]
+fn add_weights_of_both<T: Scalar, const D: usize, B: BasisFamily<T, D>, P: Phase<T, D>>(
+    (basis, grid, sites): Space<'_, T, D, B>,
+    (masses, volumes): (&[T], &[T]),
+    phase: &P,
+    (body_forces, order): (&[SVector<T, D>], &Order),
+    [whole, liquid]: [&mut [SVector<T, D>]; 2],
+) {
+    let inverse = T::one() / phase.porosity();
+    for (place, (&solid_mass, &volume)) in masses.iter().zip(volumes).enumerate() {
+        let force = body_forces[order.number(place)];
+        let liquid_mass = phase.liquid_mass(volume);
+        let (on_whole, on_liquid) = (
+            force * (solid_mass + liquid_mass),
+            force * (liquid_mass * inverse),
+        );
+        sites.for_each(basis, grid, place, |i, phi, _| {
+            whole[i] += on_whole * phi;
+            liquid[i] += on_liquid * phi;
+        });
     }
 }
 

@@ -7,7 +7,7 @@ use super::fitted::Fitted;
 use super::sums::Targets;
 use super::velocity::divide_by_mass;
 use super::waves::{Waves, smaller};
-use super::{FaceCondition, Forcing, Setup, Stepper, cloud};
+use super::{FaceCondition, Forcing, Setup, Stepper, SurfacePoint, cloud};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Face, Grid};
 use crate::law::LawSweep;
@@ -88,7 +88,7 @@ where
         if const { X::FROM_GRID } {
             return None;
         }
-        if P::FLOWS {
+        if const { P::FLOWS } {
             let geometry = self.eigenvalue_of_unit_density(forcing)?;
             return self.waves().critical_step_of_both(geometry);
         }
@@ -120,7 +120,7 @@ where
         if const { X::FROM_GRID } {
             return None;
         }
-        if R::Points::AT_PARTICLES {
+        if const { R::Points::AT_PARTICLES } {
             return Some(self.stiffness_bound(forcing));
         }
         let waves = self.stiffness_of_sample(forcing);
@@ -134,7 +134,7 @@ where
 
     fn stiffness_of_sample(&self, forcing: &Forcing<T, D>) -> Option<T> {
         let mut sample = self.sample()?;
-        if P::FLOWS {
+        if const { P::FLOWS } {
             return sample.eigenvalue_of_unit_density(forcing);
         }
         let speed = sample.waves().largest_speed();
@@ -143,39 +143,10 @@ where
 
     /// A stepper of the particles about a corner.
     fn sample(&self) -> Option<Self> {
-        let cells = self.bins.cells();
-        // By coordinates: a particle that has just strayed is in a cell without a number.
-        let last_axis_first = |cell: &&Cell<D>| {
-            let mut order = **cell;
-            order.reverse();
-            order
-        };
-        if cells.len() <= SAMPLE {
+        if self.particles.position.len() <= SAMPLE {
             return Some(self.clone());
         }
-        let corner = cells.iter().min_by_key(last_axis_first)?;
-        let distance = |cell: &Cell<D>| {
-            cell.iter()
-                .zip(corner)
-                .map(|(a, b)| a.abs_diff(*b))
-                .max()
-                .unwrap_or(0)
-        };
-        let mut distances: Vec<u32> = cells.iter().map(distance).collect();
-        let (_, &mut reach, _) = distances.select_nth_unstable(SAMPLE);
-        // Cells at the distance that is reached last come in whole or not at all, and the corner's own in any
-        // case.
-        let numbers: Vec<usize> = (0..cells.len())
-            .filter(|&p| distance(&cells[p]) < reach.max(1))
-            .collect();
-        let mut surface = self.surface.clone();
-        surface.retain_mut(|point| match numbers.binary_search(&point.particle) {
-            Ok(number) => {
-                point.particle = number;
-                true
-            }
-            Err(_) => false,
-        });
+        let (numbers, surface) = about_corner(self.bins.cells(), &self.surface)?;
         let setup = Setup::new(
             self.grid.clone(),
             self.basis.clone(),
@@ -271,6 +242,43 @@ where
             particles: &self.particles,
         }
     }
+}
+
+/// The particles about a corner, and what of the surface is theirs.
+#[inline(never)]
+fn about_corner<T: Scalar, const D: usize>(
+    cells: &[Cell<D>],
+    surface: &[SurfacePoint<T>],
+) -> Option<(Vec<usize>, Vec<SurfacePoint<T>>)> {
+    // By coordinates: a particle that has just strayed is in a cell without a number.
+    let last_axis_first = |cell: &&Cell<D>| {
+        let mut order = **cell;
+        order.reverse();
+        order
+    };
+    let corner = cells.iter().min_by_key(last_axis_first)?;
+    let distance = |cell: &Cell<D>| {
+        cell.iter()
+            .zip(corner)
+            .map(|(a, b)| a.abs_diff(*b))
+            .max()
+            .unwrap_or(0)
+    };
+    let mut distances: Vec<u32> = cells.iter().map(distance).collect();
+    let (_, &mut reach, _) = distances.select_nth_unstable(SAMPLE);
+    // Cells at the distance that is reached last come in whole or not at all, and the corner's own in any case.
+    let numbers: Vec<usize> = (0..cells.len())
+        .filter(|&p| distance(&cells[p]) < reach.max(1))
+        .collect();
+    let mut surface = surface.to_vec();
+    surface.retain_mut(|point| match numbers.binary_search(&point.particle) {
+        Ok(number) => {
+            point.particle = number;
+            true
+        }
+        Err(_) => false,
+    });
+    Some((numbers, surface))
 }
 
 /// The same constraints with every told value zero, and no load.

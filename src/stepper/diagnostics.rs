@@ -194,18 +194,26 @@ where
 
     /// Copies of the velocities of the particles, and of their liquid.
     pub(super) fn velocities(&self) -> [Vec<SVector<T, D>>; 2] {
-        let data = self.particles.phase.iter();
-        let liquid = match P::FLOWS {
-            true => data.map(|data| self.phase.liquid(data).velocity).collect(),
-            false => Vec::new(),
-        };
-        [self.particles.velocity.clone(), liquid]
+        velocities(&self.phase, &self.particles.velocity, &self.particles.phase)
     }
 
     /// `sum m v . v' / 2` of the velocities before and those now.
     pub(super) fn kinetic_energy_across(&self, before: &[Vec<SVector<T, D>>; 2]) -> T {
         kinetic_energy_across(&self.phase, &self.particles, before)
     }
+}
+
+#[inline(never)]
+fn velocities<T: Scalar, const D: usize, P: Phase<T, D>>(
+    phase: &P,
+    solid: &[SVector<T, D>],
+    data: &[P::Particle],
+) -> [Vec<SVector<T, D>>; 2] {
+    let liquid = match P::FLOWS {
+        true => data.iter().map(|data| phase.liquid(data).velocity).collect(),
+        false => Vec::new(),
+    };
+    [solid.to_vec(), liquid]
 }
 
 #[inline(never)]

@@ -116,7 +116,7 @@ fn ratio<T: Scalar>(amount: T, capacity: T) -> T {
 pub(super) fn refuse_without_capacity<T: Scalar, const D: usize, S, P: Phase<T, D>>(
     phase: &P,
     particles: &Particles<T, D, S, P::Particle>,
-    number: impl Fn(usize) -> usize,
+    number: &dyn Fn(usize) -> usize,
 ) -> Result<(), SetupError> {
     if const { !P::DIFFUSES } {
         return Ok(());

@@ -40,15 +40,32 @@ pub(super) fn lay<T: Scalar, const D: usize, B: BasisFamily<T, D>, S, P>(
 pub(super) fn validate<T: Scalar, const D: usize, B: BasisFamily<T, D>, S, P>(
     grid: &Grid<T, D>,
     particles: &Particles<T, D, S, P>,
-    number: impl Fn(usize) -> usize,
+    number: &dyn Fn(usize) -> usize,
 ) -> Result<(), SetupError> {
-    let count = particles.position.len();
-    let (sizes, edges) = match B::DOMAIN {
+    validate_kind(
+        B::DOMAIN,
+        grid,
+        &particles.domains,
+        particles.position.len(),
+        number,
+    )
+}
+
+/// The same for the domains that a basis asks for: compiled for no basis.
+#[inline(never)]
+fn validate_kind<T: Scalar, const D: usize>(
+    kind: Domain,
+    grid: &Grid<T, D>,
+    domains: &Domains<T, D>,
+    count: usize,
+    number: &dyn Fn(usize) -> usize,
+) -> Result<(), SetupError> {
+    let (sizes, edges) = match kind {
         Domain::Point => (0, 0),
         Domain::Size { .. } => (count, 0),
         Domain::Edges => (0, count),
     };
-    for ((name, found), expected) in particles.domains.lengths().zip([sizes, edges]) {
+    for ((name, found), expected) in domains.lengths().zip([sizes, edges]) {
         if found > expected {
             return Err(SetupError::UnwantedDomains { name });
         }
@@ -60,11 +77,11 @@ pub(super) fn validate<T: Scalar, const D: usize, B: BasisFamily<T, D>, S, P>(
             });
         }
     }
-    let most = match B::DOMAIN {
+    let most = match kind {
         Domain::Size { most } => T::lit(most * (1.0 + TOLERANCE)),
-        _ => return validate_edges(&particles.domains.half_edges, number),
+        _ => return validate_edges(&domains.half_edges, number),
     };
-    for (p, half) in particles.domains.half_lengths.iter().enumerate() {
+    for (p, half) in domains.half_lengths.iter().enumerate() {
         let in_cells = half.component_mul(grid.inverse_cell_size());
         // What is not a number is not within the limits either.
         let fits = |length: &T| *length >= T::zero() && *length <= most;
@@ -82,7 +99,7 @@ pub(super) fn validate<T: Scalar, const D: usize, B: BasisFamily<T, D>, S, P>(
 
 fn validate_edges<T: Scalar, const D: usize>(
     half_edges: &[SMatrix<T, D, D>],
-    number: impl Fn(usize) -> usize,
+    number: &dyn Fn(usize) -> usize,
 ) -> Result<(), SetupError> {
     for (p, edges) in half_edges.iter().enumerate() {
         if let Some(bad) = edges.iter().find(|component| !component.is_finite()) {

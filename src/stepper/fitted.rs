@@ -3,9 +3,10 @@
 //! Cells are fitted and integrated four at a time where reconstruction and basis can ([`transfer::fit`]),
 //! else streamed point by point: cell by cell where threads may share them, in one go otherwise.
 
-use nalgebra::SVector;
+use nalgebra::SMatrix;
 
 use super::Dofs;
+use super::liquid::UniformLoad;
 use super::matrix::MassMatrix;
 use super::spans::{Spans, share};
 use super::sums::{InSpan, Targets};
@@ -13,13 +14,14 @@ use crate::basis::BasisFamily;
 use crate::field::{Field, MassMomentum, Pair, Symmetric};
 use crate::mass::banded_row;
 use crate::parallel::{Groups, PerSpan, Windows, add_up, each_span};
-use crate::particles::{DomainViews, Particles};
+use crate::particles::{DomainViews, Domains, Particles};
 use crate::phase::Phase;
 use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Streams, Values};
 use crate::scalar::Scalar;
 use crate::simd::LANES;
 use crate::transfer::{
-    self, Fits, Integrand, MassesAndMomenta, Parts, Stress, Sum, Sweep, at_fixed_points, for_values,
+    self, Fits, Integrand, MassesAndMomenta, Parts, Seer, Stencil, Stress, Sum, Sweep, at_fixed_points,
+    for_values, look_up,
 };
 
 /// What is fitted, and in which functions it ends up.
@@ -85,14 +87,16 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         I: Integrand<T, D, S, C, G, 0>,
     {
         let (basis, cloud, domains) = (self.basis, &self.cloud, self.domains);
-        let amount = |p: usize| amount_of(value.at(p), I::CONSERVED, cloud.volumes[p]);
-        if !R::Points::IN_CELLS {
-            let mut sums = InSpan::whole(targets);
-            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, |dof, sum| sums.add(dof, sum));
-            return match I::CONSERVED {
-                true => self.reconstruction.integrate_conserved(cloud, amount, sink),
-                false => self.reconstruction.integrate(cloud, amount, sink),
-            };
+        let amount = amounts(value, I::CONSERVED, cloud.volumes);
+        if const { !R::Points::IN_CELLS } {
+            let sums = InSpan::whole(targets);
+            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, sums);
+            if const { I::CONSERVED } {
+                self.reconstruction.integrate_conserved(cloud, amount, sink);
+            } else {
+                self.reconstruction.integrate(cloud, amount, sink);
+            }
+            return;
         }
         let reconstruction = &*self.reconstruction;
         let occupied = cloud.bins.occupied();
@@ -117,33 +121,34 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         );
         let batched = self.batched;
         each_span(parallel, span, work, &|place, (cells, windows, reduced, kept)| {
-            // By value: references to the slices would be read anew for each DOF.
-            let mut sums = InSpan::new(windows);
+            let sums = InSpan::new(windows);
             let cells = place..place + cells.len();
             if const { transfer::fit::<T, D, B, R>() } && batched {
                 let fits = Fits {
-                    moving: basis,
-                    domains: self.domains,
+                    moving: &|point, stencil, skip| {
+                        at_moving_point((basis, cloud, domains), point, stencil, skip)
+                    },
                     reconstruction,
                     cloud,
                     cells,
                     fresh: is_fresh,
                 };
-                let mut sink = move |dof: usize, sum| sums.add(dof, sum);
+                let mut sink = sums.into_sink();
                 let found = at_fixed_points!(B, basis, |basis| Sweep::new(basis, cloud.grid)
-                    .integrate::<_, _, I, S, C, G, 0>(
+                    .integrate::<_, I, S, C, G, 0>(
                         &fits,
                         kept.values,
                         value,
                         &mut sink,
-                        &mut |_, _, _, _| ()
+                        &mut no_matrix::<T>()
                     ));
                 return reduced.set(found);
             }
-            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, |dof, sum| sums.add(dof, sum));
-            match I::CONSERVED {
-                true => R::Points::conserved_cells(reconstruction, cloud, cells, amount, sink),
-                false => R::Points::cells(reconstruction, cloud, cells, amount, sink),
+            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, sums);
+            if const { I::CONSERVED } {
+                R::Points::conserved_cells(reconstruction, cloud, cells, amount, sink);
+            } else {
+                R::Points::cells(reconstruction, cloud, cells, amount, sink);
             }
         });
         store.add_up(spans, &mut targets);
@@ -161,9 +166,10 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         let half_band = self.basis.half_band(self.cloud.grid);
         for_values!(B, self.basis, |basis| {
             let fitted = self.in_functions_of(basis);
-            match D {
-                1 => fitted.bands(half_band, &densities, dofs),
-                _ => fitted.lattices(&densities, dofs),
+            if const { D == 1 } {
+                fitted.bands(half_band, &densities, dofs);
+            } else {
+                fitted.lattices(&densities, dofs);
             }
         });
     }
@@ -177,9 +183,9 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
     ) where
         MassesAndMomenta<Q>: Integrand<T, D, 0, C, 0, C, Field = Q>,
     {
-        let (basis, cloud) = (self.basis, &self.cloud);
+        let (basis, cloud, domains) = (self.basis, &self.cloud, self.domains);
         let width = half_band + 1;
-        let amount = |p: usize| amount_of(densities.at(p), true, cloud.volumes[p]);
+        let amount = amounts(densities, true, cloud.volumes);
         let mut momenta = [const { None }; C];
         let mut bands = [const { None }; C];
         for (q, dofs) in dofs.into_iter().enumerate() {
@@ -193,14 +199,13 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             forces: [],
         };
         let mut targets: Targets<'_, T, D, 0, C, 0> = targets;
-        if !R::Points::IN_CELLS {
+        if const { !R::Points::IN_CELLS } {
             rows.iter_mut().for_each(|rows| rows.fill(T::zero()));
-            let mut sums = InSpan::whole(targets);
             let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(
                 basis,
                 cloud,
-                |dof, sum| sums.add(dof, sum),
-                |q, i, j, mass| add_to_row(rows[q], i, j, half_band, mass),
+                InSpan::whole(targets).into_sink(),
+                into_rows(rows, 0, half_band),
             );
             return self.reconstruction.integrate_conserved(cloud, amount, sink);
         }
@@ -235,23 +240,21 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                 first = start;
                 rows
             });
-            let mut sums = InSpan::new(([], momenta, []));
+            let sums = InSpan::new(([], momenta, []));
             let cells = place..place + cells.len();
-            // By value: references to the slices would be read anew for each DOF.
-            let mut sink = move |dof: usize, sum: Sum<T, D, 0, C, 0>| sums.add(dof, sum);
-            let mut matrix = move |q: usize, i: usize, j: usize, mass: T| {
-                add_to_row(rows[q], i - first, j - first, half_band, mass);
-            };
+            let mut sink = sums.into_sink();
+            let mut matrix = into_rows(rows, first, half_band);
             if const { transfer::fit::<T, D, B, R>() } && batched {
                 let fits = Fits {
-                    moving: basis,
-                    domains: self.domains,
+                    moving: &|point, stencil, skip| {
+                        at_moving_point((basis, cloud, domains), point, stencil, skip)
+                    },
                     reconstruction,
                     cloud,
                     cells,
                     fresh: is_fresh,
                 };
-                Sweep::new(basis, cloud.grid).integrate::<_, _, MassesAndMomenta<Q>, 0, C, 0, C>(
+                Sweep::new(basis, cloud.grid).integrate::<_, MassesAndMomenta<Q>, 0, C, 0, C>(
                     &fits,
                     kept.values,
                     densities,
@@ -279,7 +282,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
     ) where
         MassesAndMomenta<Q>: Integrand<T, D, 0, C, 0, C, Field = Q>,
     {
-        let (basis, cloud) = (self.basis, &self.cloud);
+        let (basis, cloud, domains) = (self.basis, &self.cloud, self.domains);
         let mut momenta = [const { None }; C];
         let mut matrices = [const { None }; C];
         for (q, dofs) in dofs.into_iter().enumerate() {
@@ -287,30 +290,26 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             matrix.clear();
             (matrices[q], momenta[q]) = (Some(matrix), Some(&mut velocity[..]));
         }
-        let mut matrices: [Option<&mut MassMatrix<T, D>>; C] = matrices;
+        let matrices: [Option<&mut MassMatrix<T, D>>; C] = matrices;
         let targets: Targets<'_, T, D, 0, C, 0> = Targets {
             scalars: [],
             vectors: momenta.map(Option::unwrap_or_default),
             forces: [],
         };
-        let mut sums = InSpan::whole(targets);
-        let mut sink = |dof: usize, sum: Sum<T, D, 0, C, 0>| sums.add(dof, sum);
-        let mut matrix = |q: usize, i: usize, j: usize, mass: T| {
-            if let Some(matrix) = &mut matrices[q] {
-                matrix.add(i, j, mass);
-            }
-        };
+        let mut sink = InSpan::whole(targets).into_sink();
+        let mut matrix = into_matrices(matrices);
         if const { transfer::fit::<T, D, B, R>() } && self.batched {
             let fits = Fits {
-                moving: basis,
-                domains: self.domains,
+                moving: &|point, stencil, skip| {
+                    at_moving_point((basis, cloud, domains), point, stencil, skip)
+                },
                 reconstruction: &*self.reconstruction,
                 cloud,
                 cells: 0..cloud.bins.occupied().len(),
                 fresh: self.spans.fresh,
             };
             let kept = room::<T, D, R>(&mut self.spans.kept, cloud.bins.occupied().len(), true);
-            Sweep::new(basis, cloud.grid).integrate::<_, _, MassesAndMomenta<Q>, 0, C, 0, C>(
+            Sweep::new(basis, cloud.grid).integrate::<_, MassesAndMomenta<Q>, 0, C, 0, C>(
                 &fits,
                 kept.values,
                 densities,
@@ -319,7 +318,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             );
             return;
         }
-        let amount = |p: usize| amount_of(densities.at(p), true, cloud.volumes[p]);
+        let amount = amounts(densities, true, cloud.volumes);
         let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, sink, matrix);
         self.reconstruction.integrate_conserved(cloud, amount, sink);
     }
@@ -340,15 +339,83 @@ fn room<T: Scalar, const D: usize, R: Reconstruction<T, D>>(
     }
 }
 
-/// A value, or the amount that a particle of this volume holds of a density.
+/// Values of the particles, or the amounts that particles of these volumes hold of a density. A function of
+/// what it uses, as [`InSpan::into_sink`].
 #[inline(always)]
-fn amount_of<T: Scalar, Q: Field<T>>(value: Q, conserved: bool, volume: T) -> Q {
-    if conserved { value.scaled(volume) } else { value }
+fn amounts<'a, T: Scalar, Q: Field<T>>(
+    value: &'a (impl Values<T, Q> + Copy + Sync),
+    conserved: bool,
+    volumes: &'a [T],
+) -> impl Fn(usize) -> Q + Copy + Sync + 'a {
+    #[inline(always)]
+    move |p| {
+        let value = value.at(p);
+        if conserved {
+            value.scaled(volumes[p])
+        } else {
+            value
+        }
+    }
 }
 
+/// Where masses go that are for no matrix.
+fn no_matrix<T>() -> impl FnMut(usize, usize, usize, T) {
+    |_, _, _, _| ()
+}
+
+/// Adds `(q, i, j, mass)` to the rows of banded matrices, which begin with the row of DOF `first`. A function
+/// of what it uses, as [`InSpan::into_sink`].
+fn into_rows<T: Scalar, const C: usize>(
+    rows: [&mut [T]; C],
+    first: usize,
+    half_band: usize,
+) -> impl FnMut(usize, usize, usize, T) {
+    #[inline(always)]
+    move |q, i, j, mass| {
+        let (i, j) = (i - first, j - first);
+        banded_row(rows[q], i, half_band)[half_band + j - i] += mass;
+    }
+}
+
+/// The same to matrices of any kind.
+fn into_matrices<T: Scalar, const D: usize, const C: usize>(
+    mut matrices: [Option<&mut MassMatrix<T, D>>; C],
+) -> impl FnMut(usize, usize, usize, T) {
+    #[inline(always)]
+    move |q, i, j, mass| {
+        if let Some(matrix) = &mut matrices[q] {
+            matrix.add(i, j, mass);
+        }
+    }
+}
+
+/// Looks up the functions at a point that moves.
 #[inline(always)]
-fn add_to_row<T: Scalar>(rows: &mut [T], i: usize, j: usize, half_band: usize, mass: T) {
-    banded_row(rows, i, half_band)[half_band + j - i] += mass;
+fn at_moving_point<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    (basis, cloud, domains): (&B, &Cloud<'_, T, D>, DomainViews<'_, T, D>),
+    point: &Point<T, D>,
+    stencil: &mut Stencil<T, D>,
+    skip: usize,
+) -> usize {
+    let place = (&point.cell, &point.position);
+    look_up(
+        stencil,
+        (basis, cloud.grid),
+        &domains,
+        seer_of(point),
+        place,
+        skip,
+    )
+}
+
+/// Who looks up functions at a point.
+#[inline(always)]
+fn seer_of<T, const D: usize>(point: &Point<T, D>) -> Seer {
+    match (point.moves, point.particle) {
+        (true, Some(p)) => Seer::Particle(p),
+        (true, None) => Seer::Moving,
+        (false, _) => Seer::Fixed,
+    }
 }
 
 /// What a point of a stream adds to DOFs.
@@ -357,22 +424,20 @@ fn stream<'a, I, T, const D: usize, B, const S: usize, const C: usize, const G: 
     basis: &'a B,
     cloud: &'a Cloud<'_, T, D>,
     domains: DomainViews<'a, T, D>,
-    mut sink: impl FnMut(usize, Sum<T, D, S, C, G>) + 'a,
+    mut sums: InSpan<'a, T, D, S, C, G>,
 ) -> impl FnMut(&Point<T, D>, I::Field) + 'a
 where
     T: Scalar,
     B: BasisFamily<T, D>,
     I: Integrand<T, D, S, C, G, 0>,
 {
+    let mut stencil = Stencil::new();
     move |point, value| {
         let parts = I::parts(&transfer::components_of::<T, I::Field>(&value), &[T::one(); D]);
-        let add = |dof: usize, phi: T, gradient: SVector<T, D>| sink(dof, Sum::of(&parts, phi, &gradient));
-        let (grid, cell, x) = (cloud.grid, &point.cell, &point.position);
-        match (point.moves, point.particle) {
-            (true, Some(p)) => domains.for_each((basis, grid), p, (cell, x), add),
-            (true, None) => basis.for_each(grid, cell, x, add),
-            (false, _) => basis.for_each_at_fixed_point(grid, cell, x, add),
-        }
+        let (here, place) = ((basis, cloud.grid), (&point.cell, &point.position));
+        stencil.for_each(here, &domains, seer_of(point), place, |dof, phi, gradient| {
+            sums.add(dof, Sum::of(&parts, phi, &gradient));
+        });
     }
 }
 
@@ -389,20 +454,20 @@ where
     B: BasisFamily<T, D>,
     I: Integrand<T, D, 0, C, 0, C>,
 {
+    let mut stencil = Stencil::new();
     move |point, value| {
         let value = transfer::components_of::<T, I::Field>(&value);
         let parts: Parts<T, D, 0, C, 0> = I::parts(&value, &[T::one(); D]);
         let masses: [T; C] = I::masses(&value);
-        let (cell, x) = (&point.cell, &point.position);
-        basis.for_each_at_fixed_point(cloud.grid, cell, x, |i, phi, gradient| {
+        let (here, place) = ((basis, cloud.grid), (&point.cell, &point.position));
+        let none = Domains::none();
+        stencil.for_each(here, &none.views(), Seer::Fixed, place, |i, phi, gradient| {
             sink(i, Sum::of(&parts, phi, &gradient));
-            basis.for_each_at_fixed_point(cloud.grid, cell, x, |j, other, _| {
-                if j <= i {
-                    for q in 0..C {
-                        matrix(q, i, j, masses[q] * phi * other);
-                    }
-                }
-            });
+        });
+        stencil.for_each_pair(here, Seer::Fixed, place, |[i, j], [phi, other]| {
+            for q in 0..C {
+                matrix(q, i, j, masses[q] * phi * other);
+            }
         });
     }
 }
@@ -449,5 +514,27 @@ impl<T: Scalar, const D: usize, P: Phase<T, D>> Values<T, Both<T, D>> for Densit
     }
 }
 
-/// Total stress and pressure, each less an even load.
-pub(super) type StressAndPressure<T, const D: usize> = Pair<Symmetric<T, D>, T>;
+/// Total stress and pressure of the particles, each less an even load.
+pub(super) struct StressesAndPressures<'a, T: Scalar, const D: usize, P: Phase<T, D>> {
+    pub(super) even: UniformLoad<T>,
+    pub(super) phase: &'a P,
+    pub(super) effective: &'a [SMatrix<T, D, D>],
+    pub(super) data: &'a [P::Particle],
+}
+
+impl<T: Scalar, const D: usize, P: Phase<T, D>> Clone for StressesAndPressures<'_, T, D, P> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: Scalar, const D: usize, P: Phase<T, D>> Copy for StressesAndPressures<'_, T, D, P> {}
+
+impl<T: Scalar, const D: usize, P: Phase<T, D>> Values<T, Pair<Symmetric<T, D>, T>>
+    for StressesAndPressures<'_, T, D, P>
+{
+    #[inline(always)]
+    fn at(&self, p: usize) -> Pair<Symmetric<T, D>, T> {
+        self.even.rest(self.phase, &self.effective[p], &self.data[p])
+    }
+}

@@ -1,11 +1,13 @@
 //! The particles' consistent mass matrix, and tractions.
 
+use nalgebra::SVector;
+
 use super::ghost::lump_undetermined_cells;
 use super::matrix::MassMatrix;
 use super::pairs::Pairs;
 use super::{FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
-use crate::grid::Grid;
+use crate::grid::{Cell, Grid};
 use crate::law::LawSweep;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
@@ -62,11 +64,35 @@ where
             let (cell, x) = self.loaded_place(point);
             let load = traction * point.area;
             self.balance.load += load;
-            let force = &mut self.dofs.force;
-            self.basis
-                .for_each(&self.grid, &cell, &x, |i, phi, _| force[i] += load * phi);
+            add_load(
+                (&self.basis, &self.grid),
+                (&cell, &x),
+                &load,
+                &mut self.dofs.force,
+            );
         }
     }
+}
+
+/// Adds a load at a point to the forces of the DOFs.
+#[inline(never)]
+pub(super) fn add_load<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    (basis, grid): (&B, &Grid<T, D>),
+    (cell, x): (&Cell<D>, &SVector<T, D>),
+    load: &SVector<T, D>,
+    force: &mut [SVector<T, D>],
+) {
+    basis.for_each(grid, cell, x, |i, phi, _| force[i] += load * phi);
+}
+
+/// Calls `add(dof, phi)` for the DOFs that a point sees.
+#[inline(never)]
+pub(super) fn each_seen<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    (basis, grid): (&B, &Grid<T, D>),
+    (cell, x): (&Cell<D>, &SVector<T, D>),
+    add: &mut dyn FnMut(usize, T),
+) {
+    basis.for_each(grid, cell, x, |i, phi, _| add(i, phi));
 }
 
 /// `M_ij = sum_p m_p phi_i phi_j`, to be completed.

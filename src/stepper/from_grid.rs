@@ -47,7 +47,7 @@ where
         } else {
             self.map_solid();
         }
-        let mapped = [&self.dofs, &self.liquid].map(|dofs| dofs.mapped_totals(self.mass));
+        let mapped = self.mapped_totals();
         self.record(&before, mapped);
         let walls = Walls::of_solid(&self.face_dofs, forcing);
         kick_dofs(&mut self.dofs, dt, &walls, &mut self.balance);
@@ -379,12 +379,12 @@ where
 }
 
 /// Refuses walls whose impulses go to the particles.
-pub(super) fn refuse_walls_that_rub<T: Scalar, const D: usize, X: Transfer<T, D>>(
+pub(super) fn refuse_walls_that_rub<T: Scalar, const D: usize>(
     forcing: &Forcing<T, D>,
 ) -> Result<(), StepError> {
     let rubs = |face: &Face| matches!(forcing.face(*face), FaceCondition::Frictional { .. });
     match Face::all::<D>().find(rubs) {
-        Some(face) if const { X::FROM_GRID } => Err(StepError::FrictionFromGrid { face }),
-        _ => Ok(()),
+        Some(face) => Err(StepError::FrictionFromGrid { face }),
+        None => Ok(()),
     }
 }

@@ -48,6 +48,7 @@ where
 
 /// Lumps the masses of cells that nothing determines: drops, splinters, bodies with one particle a cell. A
 /// matrix that particles do not determine has no inverse, and no tie helps where the next cells know no more.
+#[inline(never)]
 pub(super) fn lump_undetermined_cells<T, const D: usize, B, R>(
     (basis, grid, bins): (&B, &Grid<T, D>, &Bins<D>),
     reconstruction: &R,

@@ -97,11 +97,49 @@ impl<T: Scalar, const D: usize, P: Phase<T, D>> Velocities<'_, T, D, P> {
 
 /// `v_p += dt sum_i phi_i(x_p) a_i` of `C` phases and, of the first `M` of them, the momenta of the DOFs from
 /// the particles' new ones; returns the particles' totals.
-#[inline(never)]
+///
+/// Values are those of linear functions for all bases that have these: compiled for as few types as there are
+/// sweeps, as [`sum_particles`](super::sums::sum_particles).
 pub(super) fn kick_particles<T, const D: usize, B, N, P, const C: usize, const M: usize>(
     (basis, grid, bins): (&B, &Grid<T, D>, &Bins<D>),
     particles: &mut Particles<T, D, N, P::Particle>,
     (phase, dt): (&P, T),
+    accelerations: [&[SVector<T, D>]; C],
+    spans: &mut Spans<T, D>,
+    momenta: Targets<'_, T, D, 0, M, 0>,
+) -> Totals<T, D>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    P: Phase<T, D>,
+{
+    let sites = Sites {
+        positions: &particles.position,
+        cells: bins.cells(),
+        domains: particles.domains.views(),
+    };
+    let velocities = Velocities {
+        dt,
+        masses: &particles.mass,
+        volumes: &particles.volume,
+        velocities: &mut particles.velocity,
+        data: &mut particles.phase,
+        phase,
+        liquid_mass: T::zero(),
+    };
+    for_values!(B, basis, |basis| kick_sites::<_, D, _, _, C, M>(
+        (basis, grid, sites),
+        velocities,
+        accelerations,
+        spans,
+        momenta
+    ))
+}
+
+#[inline(never)]
+fn kick_sites<T, const D: usize, B, P, const C: usize, const M: usize>(
+    (basis, grid, sites): (&B, &Grid<T, D>, Sites<'_, T, D>),
+    velocities: Velocities<'_, T, D, P>,
     accelerations: [&[SVector<T, D>]; C],
     spans: &mut Spans<T, D>,
     mut momenta: Targets<'_, T, D, 0, M, 0>,
@@ -111,6 +149,15 @@ where
     B: BasisFamily<T, D>,
     P: Phase<T, D>,
 {
+    let Velocities {
+        dt,
+        masses,
+        volumes,
+        velocities,
+        data,
+        phase,
+        ..
+    } = velocities;
     let Spans {
         particles: windows,
         lengths,
@@ -118,20 +165,16 @@ where
         totals,
         ..
     } = &mut *spans;
-    let count = particles.position.len();
+    let count = sites.positions.len();
     let (span, parallel) = match M {
         0 => (PARTICLES, worth_sharing::<D>(count, PARTICLES)),
         _ => share::<D>(windows, count, lengths[0]),
     };
     totals.fill(Totals::zero());
     let work = (
-        Sites {
-            positions: &particles.position,
-            cells: bins.cells(),
-            domains: particles.domains.views(),
-        },
-        (&particles.mass[..], &particles.volume[..]),
-        (&mut particles.velocity[..], &mut particles.phase[..]),
+        sites,
+        (masses, volumes),
+        (velocities, data),
         store.windows(windows, &mut momenta),
         PerSpan(&mut totals[..]),
     );
@@ -143,7 +186,6 @@ where
         windows,
         found,
     )| {
-        let mut sums = InSpan::new(windows);
         let velocities = Velocities {
             dt,
             masses,
@@ -153,15 +195,9 @@ where
             phase,
             liquid_mass: T::zero(),
         };
+        let sink = InSpan::new(windows).into_sink();
         let (momenta, kicked): ([Momentum<T, D>; C], _) =
-            for_values!(B, basis, |basis| kick::<M, _, D, _, _, C>(
-                basis,
-                grid,
-                places,
-                accelerations,
-                velocities,
-                move |dof, sum| sums.add(dof, sum),
-            ));
+            kick::<M, _, D, _, _, C>(basis, grid, places, accelerations, velocities, sink);
         let mut total = Totals::zero();
         for q in 0..C {
             total.momenta[q] = momenta[q];

@@ -32,6 +32,7 @@ mod body_forces;
 mod bound;
 mod checkpoint;
 mod contact;
+mod copy;
 mod critical;
 mod diagnostics;
 mod diffusion;
@@ -90,7 +91,7 @@ use pairs::Pairs;
 use spans::{SCALARS, Spans, VECTORS};
 
 /// Steps particles through time. See the [module](self) for the algorithm.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Stepper<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>, X: Transfer<T, D> = Flip>
 where
     T: Scalar,
@@ -166,13 +167,16 @@ where
     /// the grid or larger than the basis allows ([`Domain`](crate::basis::Domain)), a constant of the phase
     /// makes no sense, or beyond one axis the reconstruction is of one phase only or wants a basis that is
     /// one polynomial of its degree in each cell ([`ParticleMatrix`](crate::mass::ParticleMatrix)).
-    pub fn new(setup: Setup<T, D, B, R, L, P, X>) -> Result<Self, SetupError> {
+    pub fn new(mut setup: Setup<T, D, B, R, L, P, X>) -> Result<Self, SetupError> {
         const {
             crate::basis::constants_agree::<T, D, B>();
             crate::reconstruction::constants_agree::<T, D, R>();
             crate::phase::constants_agree::<T, D, P>();
             transfer::constants_agree::<T, D, X>();
         };
+        // While the setup is whole: what frees its parts one by one, where one of many tests fails, is else
+        // compiled for every stepper.
+        let (bins, places) = take_in(&mut setup)?;
         let Setup {
             grid,
             basis,
@@ -181,40 +185,11 @@ where
             phase,
             transfer,
             velocity_mass,
-            mut particles,
-            mut memory,
+            particles,
+            memory,
             surface,
         } = setup;
-        check_material(&law, &phase, &particles)?;
-        diffusion::refuse_without_capacity(&phase, &particles, |p| p)?;
-        domain::lay::<T, D, B, _, _>(&grid, &mut particles);
-        domain::validate::<T, D, B, _, _>(&grid, &particles, |p| p)?;
-        if P::FLOWS && R::Mass::IN_ACCELERATION && D > 1 {
-            return Err(SetupError::OnePhaseOnly);
-        }
-        from_grid::refuse_what_it_cannot::<T, D, R, P, X>()?;
-        if memory.is_empty() {
-            memory.resize(particles.len(), X::Particle::default());
-        }
-        if memory.len() != particles.len() {
-            let (found, expected) = (memory.len(), particles.len());
-            let name = "memory";
-            return Err(SetupError::Lengths {
-                name,
-                found,
-                expected,
-            });
-        }
-        if R::Mass::IN_ACCELERATION && D > 1 {
-            polynomial::refuse_bends_within_cells(&basis, &grid)?;
-        }
-        let bins = find_cells(&grid, &surface, &mut particles.position)?;
-        let grid = match B::FOLLOWS_WINDOW {
-            true => window::lay(grid, bins.cells()),
-            false => grid,
-        };
         let along = basis.degree() + 1;
-        let places = from_grid::dof_places::<T, D, B, X>(&basis, &grid)?;
         let parts = Parts::new(
             &grid,
             bins,
@@ -313,10 +288,10 @@ where
             let numbers = cells.div_ceil(LANES) * R::Points::KEPT;
             self.spans.kept.reserve_exact(numbers);
         }
-        if R::Mass::OF_PARTICLES {
+        if const { R::Mass::OF_PARTICLES } {
             return;
         }
-        if P::FLOWS {
+        if const { P::FLOWS } {
             self.map_both_before(T::zero(), &Forcing::none());
             self.liquid.velocity.fill(SVector::zeros());
         } else {
@@ -376,15 +351,8 @@ where
         forcing: &Forcing<T, D>,
         measure: bool,
     ) -> Result<Energy<T>, StepError> {
-        for size in [dt, kick] {
-            if !size.is_finite() || size <= T::zero() {
-                let value = size.primal();
-                return Err(StepError::StepSize { value });
-            }
-        }
-        forcing.suits_phase([P::FLOWS, P::DIFFUSES])?;
-        from_grid::refuse_walls_that_rub::<T, D, X>(forcing)?;
-        faces::walls_can_be_held(forcing, &self.left_out)?;
+        let kinds = [P::FLOWS, P::DIFFUSES, X::FROM_GRID];
+        refuse_bad_step([kick, dt], forcing, kinds, &self.left_out)?;
         let mut outcome = Ok(Energy::none());
         within_pool(self.is_worth_sending(), &mut || {
             outcome = self.step_here([kick, dt], forcing, measure);
@@ -415,7 +383,7 @@ where
         if fits || B::TAKES_IN_CELLS {
             self.bins.list(&self.grid);
         }
-        if B::TAKES_IN_CELLS {
+        if const { B::TAKES_IN_CELLS } {
             self.basis.take_in(&self.grid, &self.bins);
         }
         self.spans.refresh(&self.basis, &self.grid, &self.bins, fits);
@@ -473,7 +441,7 @@ where
     /// Finds where surfaces cut cells, in one dimension.
     fn cut_cells(&mut self) {
         self.cuts.clear();
-        if D > 1 {
+        if const { D > 1 } {
             return;
         }
         for point in &self.surface {
@@ -507,24 +475,6 @@ where
             }
         }
         (*self.bins.cell_of(p), self.surface_position(point))
-    }
-
-    fn left(&self, particle: usize) -> StepError {
-        let position = values(&self.particles.position[particle]);
-        let particle = self.order.number(particle);
-        match position.iter().find(|x| !x.is_finite()) {
-            Some(&value) => StepError::Invalid {
-                step: self.steps,
-                particle,
-                name: "position",
-                value,
-            },
-            None => StepError::LeftGrid {
-                step: self.steps,
-                particle,
-                position,
-            },
-        }
     }
 
     /// The particles, in the order in which they are kept: see [`Stepper::numbers`].
@@ -669,6 +619,50 @@ impl<T: Scalar, const D: usize> Parts<T, D> {
     }
 }
 
+/// Checks all that a stepper is to be made of and makes it fit: domains, window of the grid, what the
+/// transfer remembers. Returns the particles' cells and the places of the DOFs.
+fn take_in<T, const D: usize, B, R, L, P, X>(
+    setup: &mut Setup<T, D, B, R, L, P, X>,
+) -> Result<(Bins<D>, DofPlaces<T, D>), SetupError>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    R: Reconstruction<T, D>,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    let (basis, particles, memory) = (&setup.basis, &mut setup.particles, &mut setup.memory);
+    check_material(&setup.law, &setup.phase, particles)?;
+    domain::lay::<T, D, B, _, _>(&setup.grid, particles);
+    domain::validate::<T, D, B, _, _>(&setup.grid, particles, &|p| p)?;
+    if P::FLOWS && R::Mass::IN_ACCELERATION && D > 1 {
+        return Err(SetupError::OnePhaseOnly);
+    }
+    from_grid::refuse_what_it_cannot::<T, D, R, P, X>()?;
+    if memory.is_empty() {
+        memory.resize(particles.len(), X::Particle::default());
+    }
+    if memory.len() != particles.len() {
+        let (found, expected) = (memory.len(), particles.len());
+        let name = "memory";
+        return Err(SetupError::Lengths {
+            name,
+            found,
+            expected,
+        });
+    }
+    if const { R::Mass::IN_ACCELERATION && D > 1 } {
+        polynomial::refuse_bends_within_cells(basis, &setup.grid)?;
+    }
+    let bins = find_cells(&setup.grid, &setup.surface, &mut particles.position)?;
+    if const { B::FOLLOWS_WINDOW } {
+        window::lay(&mut setup.grid, bins.cells());
+    }
+    let places = from_grid::dof_places::<T, D, B, X>(basis, &setup.grid)?;
+    Ok((bins, places))
+}
+
 /// Checks particles and what they are made of.
 #[inline(never)]
 fn check_material<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
@@ -678,7 +672,8 @@ fn check_material<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
 ) -> Result<(), SetupError> {
     particles.validate_with(law.numbers())?;
     phase.validate()?;
-    refuse_unknown_stress(law, particles)
+    refuse_unknown_stress(law, particles)?;
+    diffusion::refuse_without_capacity(phase, particles, &|p| p)
 }
 
 /// Checks where surfaces and particles are, and moves the latter off the edges of their cells.
@@ -715,6 +710,48 @@ fn refuse_unknown_stress<T: Scalar, const D: usize, L: LawSweep<T, D>, P>(
             value: particles.stress[particle][(0, 0)].primal(),
             allowed: law.limits(),
         }),
+    }
+}
+
+/// Refuses sizes of a step that make no sense, and conditions that a liquid that flows, a phase that diffuses
+/// or a transfer from the grid does not know.
+#[inline(never)]
+fn refuse_bad_step<T: Scalar, const D: usize>(
+    [kick, dt]: [T; 2],
+    forcing: &Forcing<T, D>,
+    [flows, diffuses, from_grid]: [bool; 3],
+    left_out: &[Option<usize>],
+) -> Result<(), StepError> {
+    for size in [dt, kick] {
+        if !size.is_finite() || size <= T::zero() {
+            let value = size.primal();
+            return Err(StepError::StepSize { value });
+        }
+    }
+    forcing.suits_phase([flows, diffuses])?;
+    if from_grid {
+        from_grid::refuse_walls_that_rub(forcing)?;
+    }
+    faces::walls_can_be_held(forcing, left_out)
+}
+
+/// The error of a particle that left the grid, of which number and place are known.
+#[cold]
+#[inline(never)]
+fn left<T: Scalar, const D: usize>(step: usize, particle: usize, position: &SVector<T, D>) -> StepError {
+    let position = values(position);
+    match position.iter().find(|x| !x.is_finite()) {
+        Some(&value) => StepError::Invalid {
+            step,
+            particle,
+            name: "position",
+            value,
+        },
+        None => StepError::LeftGrid {
+            step,
+            particle,
+            position,
+        },
     }
 }
 

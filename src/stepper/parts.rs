@@ -85,8 +85,8 @@ where
         }
         self.particles.validate_with(self.law.numbers())?;
         refuse_unknown_stress(&self.law, &self.particles)?;
-        refuse_without_capacity(&self.phase, &self.particles, |place| place)?;
-        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, |place| place)?;
+        refuse_without_capacity(&self.phase, &self.particles, &|place| place)?;
+        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, &|place| place)?;
         let positions = &self.particles.position;
         self.bins =
             Bins::without_lists(&self.grid, positions).map_err(|Outside(place)| SetupError::Outside {

@@ -39,26 +39,15 @@ where
             volumes: &particles.volume,
             cuts: &self.cuts,
         };
+        let reconstruction = &mut self.reconstruction;
         if !self.law.remembers() {
-            R::Filter::relax(
-                &mut self.reconstruction,
-                &cloud,
-                None,
-                crossed,
-                &mut particles.stress,
-            );
+            R::Filter::relax(reconstruction, &cloud, crossed, &mut particles.stress);
         } else {
             self.relaxed.copy_from_slice(&particles.stress);
-            R::Filter::relax(&mut self.reconstruction, &cloud, None, crossed, &mut self.relaxed);
+            R::Filter::relax(reconstruction, &cloud, crossed, &mut self.relaxed);
         }
-        let mass = Some(&particles.mass[..]);
-        R::Filter::relax(
-            &mut self.reconstruction,
-            &cloud,
-            mass,
-            crossed,
-            &mut particles.velocity,
-        );
+        let (masses, velocities) = (&particles.mass, &mut particles.velocity);
+        R::Filter::relax_weighted(reconstruction, &cloud, masses, crossed, velocities);
         if self.law.remembers() {
             self.strain_to_relaxed();
         }

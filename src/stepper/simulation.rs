@@ -167,28 +167,7 @@ where
     }
 
     fn diagnostics(&self) -> Diagnostics<f64> {
-        let Diagnostics {
-            conservation,
-            liquid_conservation,
-            grid_crossings,
-            reduced_cells,
-            virtual_cells,
-            total_mass,
-            wall_work,
-            wall_gain,
-            unsolved_contacts,
-        } = self.diagnostics;
-        Diagnostics {
-            conservation: cast_conservation(&conservation),
-            liquid_conservation: liquid_conservation.as_ref().map(cast_conservation),
-            grid_crossings,
-            reduced_cells,
-            virtual_cells,
-            total_mass: total_mass.primal(),
-            wall_work: wall_work.primal(),
-            wall_gain: wall_gain.primal(),
-            unsolved_contacts,
-        }
+        cast_diagnostics(&self.diagnostics)
     }
 
     fn energy(&self) -> Energy<f64> {
@@ -279,6 +258,32 @@ fn liquid_of<T: Scalar, const D: usize, P: Phase<T, D>>(
         };
     }
     liquid
+}
+
+#[inline(never)]
+fn cast_diagnostics<T: Scalar>(diagnostics: &Diagnostics<T>) -> Diagnostics<f64> {
+    let Diagnostics {
+        conservation,
+        liquid_conservation,
+        grid_crossings,
+        reduced_cells,
+        virtual_cells,
+        total_mass,
+        wall_work,
+        wall_gain,
+        unsolved_contacts,
+    } = *diagnostics;
+    Diagnostics {
+        conservation: cast_conservation(&conservation),
+        liquid_conservation: liquid_conservation.as_ref().map(cast_conservation),
+        grid_crossings,
+        reduced_cells,
+        virtual_cells,
+        total_mass: total_mass.primal(),
+        wall_work: wall_work.primal(),
+        wall_gain: wall_gain.primal(),
+        unsolved_contacts,
+    }
 }
 
 fn cast_energy<T: Scalar>(energy: &Energy<T>) -> Energy<f64> {

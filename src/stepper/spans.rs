@@ -176,6 +176,19 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
         }
     }
 
+    /// How many particles changed their cells, whether one strayed, and the first fault.
+    #[inline(never)]
+    pub(super) fn sum_moves(&mut self) -> (usize, bool, Option<Fault<T>>) {
+        let (mut crossings, mut strayed, mut fault) = (0, false, None);
+        for span in &self.moved {
+            crossings += span.crossings;
+            strayed |= span.strayed;
+            fault = fault.or(span.fault);
+        }
+        self.stale |= crossings > 0;
+        (crossings, strayed, fault)
+    }
+
     /// Windows for where the particles are now; `fits` says whether cells are passed over too.
     #[inline(never)]
     pub(super) fn refresh<B: BasisFamily<T, D>>(

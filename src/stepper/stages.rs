@@ -1,16 +1,20 @@
 //! What each stage of a step is for the types of a stepper, but where the file of the stage itself asks them
 //! (`diffusion`, `contact`). The list is in `step`.
+//!
+//! Each choice is an `if const { .. }`: what its other branch calls is then not even compiled. A `match` on
+//! constants, or a condition made of constants at run time, compiles the sweeps of all branches for every
+//! stepper.
 
 use super::acceleration::{Walls, accelerate};
 use super::drift::{Matter, move_particles};
-use super::fitted::{DensitiesOfBoth, Fitted, StressAndPressure, densities};
+use super::fitted::{DensitiesOfBoth, Fitted, StressesAndPressures, densities};
 use super::forcing::Forcing;
 use super::kick::kick_particles;
 use super::liquid::UniformLoad;
 use super::spans::{Fault, Totals};
 use super::sums::{Targets, first, sum_particles};
 use super::velocity::divide_by_mass;
-use super::{Stepper, cloud};
+use super::{Stepper, cloud, left};
 use crate::basis::BasisFamily;
 use crate::error::StepError;
 use crate::field::{MassMomentum, Symmetric};
@@ -98,12 +102,16 @@ where
         if const { P::FLOWS } {
             self.find_seals(forcing);
         }
-        match const { (R::Points::AT_PARTICLES, P::FLOWS, R::Mass::OF_PARTICLES) } {
-            (true, false, _) => self.sum::<1, 0, 1>(even),
-            (true, true, _) => self.sum::<3, 2, 2>(even),
-            (false, false, _) => self.sum::<1, 0, 0>(even),
-            (false, true, false) => self.sum::<3, 0, 0>(even),
-            (false, true, true) => self.sum::<3, 2, 0>(even),
+        if const { R::Points::AT_PARTICLES && P::FLOWS } {
+            self.sum::<3, 2, 2>(even);
+        } else if const { R::Points::AT_PARTICLES } {
+            self.sum::<1, 0, 1>(even);
+        } else if const { P::FLOWS && R::Mass::OF_PARTICLES } {
+            self.sum::<3, 2, 0>(even);
+        } else if const { P::FLOWS } {
+            self.sum::<3, 0, 0>(even);
+        } else {
+            self.sum::<1, 0, 0>(even);
         }
         if const { R::Mass::IN_ACCELERATION } {
             self.assemble_matrices();
@@ -131,20 +139,20 @@ where
 
     /// Counts crossings; the error is that of the first particle at fault.
     fn account_for_moves(&mut self) -> Result<(), StepError> {
-        let moved = &self.spans.moved;
-        let crossings = moved.iter().map(|span| span.crossings).sum();
-        let fault = moved.iter().find_map(|span| span.fault);
-        self.strayed |= moved.iter().any(|span| span.strayed);
+        let (crossings, strayed, fault) = self.spans.sum_moves();
+        self.strayed |= strayed;
         self.diagnostics.grid_crossings += crossings;
         self.bins.note_crossings(crossings);
         self.order.note_crossings(crossings);
-        self.spans.stale |= crossings > 0;
         match fault {
             None => Ok(()),
             Some(Fault::Material(p, flaw)) => {
                 Err(flaw.error(self.steps, self.order.number(p), self.law.limits()))
             }
-            Some(Fault::Left(p)) => Err(self.left(p)),
+            Some(Fault::Left(p)) => {
+                let position = &self.particles.position[p];
+                Err(left(self.steps, self.order.number(p), position))
+            }
         }
     }
 
@@ -162,10 +170,16 @@ where
             batched,
         };
         let forces = [&mut self.dofs.force[..], &mut self.liquid.force[..]];
-        // Three closures rather than one with branches: what a closure holds costs instructions even where it
-        // is not used.
+        // Three kinds of values rather than one with branches: what a closure holds costs instructions even
+        // where it is not used. And none that is a closure of this function, for which all fits would be
+        // compiled once more: it is generic in all that a stepper is made of.
         if const { P::FLOWS } {
-            let rest = |p: usize| -> StressAndPressure<T, D> { even.rest(phase, &effective[p], &data[p]) };
+            let rest = StressesAndPressures {
+                even,
+                phase,
+                effective,
+                data,
+            };
             fitted.forces::<2>(rest, Targets::<T, D, 0, 0, 2>::of_forces(forces));
         } else if const { P::COUPLED } {
             let total = |p: usize| Symmetric(phase.total_stress(&effective[p], &data[p]));
@@ -208,11 +222,14 @@ where
     /// Velocities of the particles, and the momenta of the DOFs where those of the particles are simply
     /// summed.
     pub(super) fn kick_particles(&mut self, dt: T) -> Totals<T, D> {
-        match const { (P::FLOWS, R::Mass::OF_PARTICLES && !R::Filter::FILTERS) } {
-            (false, false) => self.kick_phases::<1, 0>(dt),
-            (false, true) => self.kick_phases::<1, 1>(dt),
-            (true, false) => self.kick_phases::<2, 0>(dt),
-            (true, true) => self.kick_phases::<2, 2>(dt),
+        if const { P::FLOWS && R::Mass::OF_PARTICLES && !R::Filter::FILTERS } {
+            self.kick_phases::<2, 2>(dt)
+        } else if const { P::FLOWS } {
+            self.kick_phases::<2, 0>(dt)
+        } else if const { R::Mass::OF_PARTICLES && !R::Filter::FILTERS } {
+            self.kick_phases::<1, 1>(dt)
+        } else {
+            self.kick_phases::<1, 0>(dt)
         }
     }
 
@@ -241,11 +258,12 @@ where
 
     /// Momenta and masses of the DOFs; returns their totals, of both phases.
     pub(super) fn map_momenta(&mut self) -> [MassMomentum<T, D>; 2] {
-        match const { (R::Mass::OF_PARTICLES, R::Filter::FILTERS, P::FLOWS) } {
-            (true, false, _) => {}
-            (true, true, false) => self.sum_momenta::<1>(),
-            (true, true, true) => self.sum_momenta::<2>(),
-            (false, _, _) => self.fit_momenta(!P::FLOWS),
+        if const { !R::Mass::OF_PARTICLES } {
+            self.fit_momenta(!P::FLOWS);
+        } else if const { R::Filter::FILTERS && P::FLOWS } {
+            self.sum_momenta::<2>();
+        } else if const { R::Filter::FILTERS } {
+            self.sum_momenta::<1>();
         }
         self.mapped_totals()
     }
@@ -260,9 +278,10 @@ where
 
     /// Momenta and masses of the DOFs of the solid alone, from the velocities as they are.
     pub(super) fn map_solid(&mut self) {
-        match const { R::Mass::OF_PARTICLES } {
-            true => self.sum_momenta::<1>(),
-            false => self.fit_momenta(true),
+        if const { R::Mass::OF_PARTICLES } {
+            self.sum_momenta::<1>();
+        } else {
+            self.fit_momenta(true);
         }
     }
 
@@ -322,8 +341,12 @@ where
     }
 
     /// Total mass and momentum of the DOFs, of both phases.
-    fn mapped_totals(&self) -> [MassMomentum<T, D>; 2] {
-        [&self.dofs, &self.liquid].map(|dofs| dofs.mapped_totals(self.mass))
+    pub(super) fn mapped_totals(&self) -> [MassMomentum<T, D>; 2] {
+        // No `map` of arrays: for a closure of this function it would be compiled for every stepper.
+        [
+            self.dofs.mapped_totals(self.mass),
+            self.liquid.mapped_totals(self.mass),
+        ]
     }
 
     /// Compares what was mapped with what the particles have.

@@ -19,18 +19,18 @@ const MARGIN: usize = 3;
 /// One in so many of its cells along an axis are laid beyond a body, so that a window seldom moves.
 const PART: usize = 8;
 
-/// The grid with a window around the particles' `cells`, or without where that would not spare half of it.
+/// Gives the grid a window around the particles' `cells`, or none where that would not spare half of it.
 #[inline(never)]
-pub(super) fn lay<T: Scalar, const D: usize>(grid: Grid<T, D>, cells: &[Cell<D>]) -> Grid<T, D> {
+pub(super) fn lay<T: Scalar, const D: usize>(grid: &mut Grid<T, D>, cells: &[Cell<D>]) {
     let around = Window::around(cells).widened(|cells| MARGIN + cells / PART);
     let all = grid.cells();
-    let grid = grid.with_window(around);
     let total = all.iter().fold(1.0, |product, &n| product * n as f64);
-    if 2.0 * grid.cell_count() as f64 <= total {
-        grid
+    let windowed = grid.clone().with_window(around);
+    *grid = if 2.0 * windowed.cell_count() as f64 <= total {
+        windowed
     } else {
-        grid.with_window(Window::whole(all))
-    }
+        windowed.with_window(Window::whole(all))
+    };
 }
 
 impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
@@ -47,7 +47,7 @@ where
     #[inline(never)]
     pub(super) fn follow_particles(&mut self) {
         self.strayed = false;
-        self.grid = lay(self.grid.clone(), self.bins.cells());
+        lay(&mut self.grid, self.bins.cells());
         self.follow_window();
     }
 

@@ -1,5 +1,5 @@
-//! Sums at the DOFs of one cell for a basis that is no product, kept at hand while particles of that cell
-//! come one after the other.
+//! Sums at the DOFs of one cell, point by point, kept at hand while particles of that cell come one after the
+//! other.
 //!
 //! Adding every particle's part to the DOFs themselves would make each particle wait for the one before: they
 //! mostly share DOFs, and an addition in memory takes twice as long as one in a register.
@@ -8,6 +8,7 @@ use nalgebra::SVector;
 
 use super::p2g::Parts;
 use super::places::DofPlaces;
+use super::stencil::{Seer, Stencil};
 use super::sums::Sum;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
@@ -23,22 +24,22 @@ type Place<'a, T, const D: usize> = (&'a Cell<D>, &'a SVector<T, D>);
 
 /// Sums of the DOFs of a cell, in the order in which the basis visits them: the same one for every point of
 /// the cell.
-pub(super) struct StencilSums<'a, T, const D: usize, B, const S: usize, const C: usize, const G: usize> {
-    basis: &'a B,
-    grid: &'a Grid<T, D>,
-    cell: Option<Place<'a, T, D>>,
+pub(super) struct StencilSums<'a, T, const D: usize, const S: usize, const C: usize, const G: usize> {
+    cell: Option<&'a Cell<D>>,
+    count: usize,
+    dofs: [usize; AT_HAND],
     sums: [Sum<T, D, S, C, G>; AT_HAND],
 }
 
-impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, const S: usize, const C: usize, const G: usize>
-    StencilSums<'a, T, D, B, S, C, G>
+impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usize>
+    StencilSums<'a, T, D, S, C, G>
 {
     #[inline(always)]
-    pub(super) fn new(basis: &'a B, grid: &'a Grid<T, D>) -> Self {
+    pub(super) fn new() -> Self {
         Self {
-            basis,
-            grid,
             cell: None,
+            count: 0,
+            dofs: [0; AT_HAND],
             sums: [Sum::zero(); AT_HAND],
         }
     }
@@ -47,51 +48,54 @@ impl<'a, T: Scalar, const D: usize, B: BasisFamily<T, D>, const S: usize, const 
     /// place; with `places` of the DOFs tensors go with moments. `sink(dof, sum)` takes the sums of the cell
     /// before.
     #[inline(always)]
-    pub(super) fn add(
+    pub(super) fn add<B: BasisFamily<T, D>>(
         &mut self,
+        space: (&B, &Grid<T, D>, &mut Stencil<T, D>),
         (p, place): (usize, Place<'a, T, D>),
         domains: &DomainViews<'_, T, D>,
         parts: &Parts<T, D, S, C, G>,
         places: Option<&DofPlaces<T, D>>,
         sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
     ) {
-        if self.cell.is_none_or(|(last, _)| last != place.0) {
+        if self.cell.is_none_or(|last| last != place.0) {
             self.flush(sink);
-            self.cell = Some(place);
+            self.cell = Some(place.0);
         }
         let mut k = 0;
-        let sums = &mut self.sums;
-        domains.for_each((self.basis, self.grid), p, place, |dof, phi, mut gradient| {
-            if let Some(places) = places {
-                gradient = places.offset(self.grid, dof, place) * phi;
-            }
-            match sums.get_mut(k) {
-                Some(sum) => sum.add(parts, phi, &gradient),
-                None => {
-                    let mut sum = Sum::zero();
-                    sum.add(parts, phi, &gradient);
-                    sink(dof, sum);
+        let (dofs, sums) = (&mut self.dofs, &mut self.sums);
+        let (basis, grid, stencil) = space;
+        stencil.for_each(
+            (basis, grid),
+            domains,
+            Seer::Particle(p),
+            place,
+            #[inline(always)]
+            |dof, phi, mut gradient| {
+                if let Some(places) = places {
+                    gradient = places.offset(grid, dof, place) * phi;
                 }
-            }
-            k += 1;
-        });
+                match sums.get_mut(k) {
+                    Some(sum) => {
+                        dofs[k] = dof;
+                        sum.add(parts, phi, &gradient);
+                    }
+                    None => sink(dof, Sum::of(parts, phi, &gradient)),
+                }
+                k += 1;
+            },
+        );
+        self.count = k.min(AT_HAND);
     }
 
     /// Hands the sums over and starts again.
     #[inline(always)]
     pub(super) fn flush(&mut self, sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>)) {
-        let Some((cell, x)) = self.cell.take() else {
-            return;
-        };
-        let mut k = 0;
-        let sums = &mut self.sums;
-        self.basis.for_each(self.grid, cell, x, |dof, _, _| {
-            if let Some(sum) = sums.get_mut(k) {
-                sink(dof, *sum);
-                *sum = Sum::zero();
-            }
-            k += 1;
-        });
+        for k in 0..self.count.min(AT_HAND) {
+            sink(self.dofs[k], self.sums[k]);
+            self.sums[k] = Sum::zero();
+        }
+        self.count = 0;
+        self.cell = None;
     }
 }
 

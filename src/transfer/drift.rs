@@ -10,6 +10,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Sweep;
 use super::group::{Group, come_in_eights};
+use super::stencil::{Seer, Stencil};
 use crate::basis::{BasisFamily, Domain};
 use crate::grid::{Cell, Grid};
 use crate::particles::{DomainViews, Places, settle};
@@ -314,7 +315,7 @@ fn fill_by_points<T: Scalar, const D: usize, B: BasisFamily<T, D>, const C: usiz
     outcome: &mut Outcome,
 ) {
     let (velocities, dt) = (motion.velocities, motion.dt);
-    let mut p = first;
+    let (mut p, mut stencil) = (first, Stencil::new());
     while p < places.cells.len() && block.count < BLOCK && outcome.left.is_none() {
         let (x, cell) = (&mut places.positions[p], &mut places.cells[p]);
         let mut v = SVector::zeros();
@@ -323,12 +324,19 @@ fn fill_by_points<T: Scalar, const D: usize, B: BasisFamily<T, D>, const C: usiz
             half_lengths: places.half_lengths,
             half_edges: places.half_edges,
         };
-        domains.for_each((basis, grid), p, (&*cell, &*x), |i, phi, grad_phi| {
-            v += velocities[0][i] * phi;
-            for q in 0..C {
-                gradients[q] += velocities[q][i] * grad_phi.transpose();
-            }
-        });
+        stencil.for_each(
+            (basis, grid),
+            &domains,
+            Seer::Particle(p),
+            (&*cell, &*x),
+            #[inline(always)]
+            |i, phi, grad_phi| {
+                v += velocities[0][i] * phi;
+                for q in 0..C {
+                    gradients[q] += velocities[q][i] * grad_phi.transpose();
+                }
+            },
+        );
         let path = v * dt;
         *x += path;
         places.displacements[p] += path;

@@ -9,11 +9,12 @@ use std::ops::Range;
 use super::Sweep;
 use super::pairs::PairSums;
 use super::polynomials::{CellMatrices, MOST_FUNCTIONS};
+use super::stencil::{Seer, Stencil};
 use super::sums::{Parts, Sum, Sums};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::field::{Field, MassMomentum, Pair, Symmetric, symmetric_component};
 use crate::grid::Cell;
-use crate::particles::DomainViews;
+use crate::particles::Domains;
 use crate::reconstruction::{Cloud, Kept, Point, Reconstruction, Streams, Values, batch_of_cells};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Number, Packs, dispatch_vectors, each, in_lanes, inlined};
@@ -155,11 +156,15 @@ impl<V: Copy, const D: usize> AtPoints<V, D> {
     }
 }
 
+/// Finds the functions at a point: as [`look_up`](super::look_up). Behind a pointer, so that fits are
+/// integrated by one sweep for all bases with the same functions at points that stand still.
+pub(crate) type LookUp<'a, T, const D: usize> =
+    dyn Fn(&Point<T, D>, &mut Stencil<T, D>, usize) -> usize + Sync + 'a;
+
 /// What is to be integrated where.
-pub(crate) struct Fits<'a, 'c, T, const D: usize, M, R> {
-    /// The functions at points that move, and the domains of those that are particles.
-    pub(crate) moving: &'a M,
-    pub(crate) domains: DomainViews<'a, T, D>,
+pub(crate) struct Fits<'a, 'c, T, const D: usize, R> {
+    /// Looks up the functions at points that move, but so many first ones; returns how many there are.
+    pub(crate) moving: &'a LookUp<'a, T, D>,
     pub(crate) reconstruction: &'a R,
     pub(crate) cloud: &'a Cloud<'c, T, D>,
     /// Places in the list of occupied cells.
@@ -173,14 +178,17 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     #[inline(always)]
     fn kind(&self, cell: &Cell<D>) -> [usize; D] {
         let cells = self.grid.cells();
-        std::array::from_fn(|axis| {
-            let (below, above) = (cell[axis] as usize, cells[axis] - 1 - cell[axis] as usize);
-            if below < MOST_WIDTH || above < MOST_WIDTH {
-                below + MOST_WIDTH
-            } else {
-                0
-            }
-        })
+        each(
+            #[inline(always)]
+            |axis| {
+                let (below, above) = (cell[axis] as usize, cells[axis] - 1 - cell[axis] as usize);
+                if below < MOST_WIDTH || above < MOST_WIDTH {
+                    below + MOST_WIDTH
+                } else {
+                    0
+                }
+            },
+        )
     }
 
     /// Whether cells that ascend follow each other along axis 0, and their DOFs too.
@@ -197,7 +205,6 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     /// to its consistent matrix. Returns how many cells were fitted without the full set of functions.
     #[inline(always)]
     pub(crate) fn integrate<
-        M: BasisFamily<T, D>,
         R: Reconstruction<T, D>,
         I: Integrand<T, D, S, C, G, W>,
         const S: usize,
@@ -206,7 +213,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         const W: usize,
     >(
         &self,
-        fits: &Fits<'_, '_, T, D, M, R>,
+        fits: &Fits<'_, '_, T, D, R>,
         kept: &mut [[T; LANES]],
         value: &(impl Values<T, I::Field> + Copy),
         sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
@@ -214,13 +221,12 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     ) -> usize {
         let (sweep, value) = (*self, *value);
         dispatch_vectors!(T, |k| sweep
-            .integrate_in::<_, M, R, I, S, C, G, W>(k, fits, kept, &value, sink, matrix))
+            .integrate_in::<_, R, I, S, C, G, W>(k, fits, kept, &value, sink, matrix))
     }
 
     #[inline(always)]
     fn integrate_in<
         K: Packs<T>,
-        M: BasisFamily<T, D>,
         R: Reconstruction<T, D>,
         I: Integrand<T, D, S, C, G, W>,
         const S: usize,
@@ -230,7 +236,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     >(
         &self,
         k: K,
-        fits: &Fits<'_, '_, T, D, M, R>,
+        fits: &Fits<'_, '_, T, D, R>,
         kept: &mut [[T; LANES]],
         value: &impl Values<T, I::Field>,
         sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
@@ -249,7 +255,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         let mut numbers = kept.chunks_exact_mut(R::Points::KEPT.max(1));
         for first in cells.clone().step_by(LANES) {
             let places = first..cells.end.min(first + LANES);
-            let four = batch_of_cells(cloud, places.clone()).map(|(_, cell)| cell);
+            let batch = batch_of_cells(cloud, places.clone());
+            let four = each(
+                #[inline(always)]
+                |l| batch[l].1,
+            );
             let kept = Kept {
                 numbers: numbers.next().unwrap_or_default(),
                 fresh: fits.fresh,
@@ -316,7 +326,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
                 );
             }
             if outcome.hard.contains(&true) {
-                reduced += self.integrate_single::<M, R, I, S, C, G, W>(
+                reduced += self.integrate_single::<R, I, S, C, G, W>(
                     fits,
                     places,
                     &outcome.hard,
@@ -333,7 +343,6 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     /// of functions.
     #[inline(never)]
     fn integrate_single<
-        M: BasisFamily<T, D>,
         R: Reconstruction<T, D>,
         I: Integrand<T, D, S, C, G, W>,
         const S: usize,
@@ -342,7 +351,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         const W: usize,
     >(
         &self,
-        fits: &Fits<'_, '_, T, D, M, R>,
+        fits: &Fits<'_, '_, T, D, R>,
         places: Range<usize>,
         hard: &[bool; LANES],
         value: &impl Values<T, I::Field>,
@@ -350,31 +359,32 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         matrix: &mut impl FnMut(usize, usize, usize, T),
     ) -> usize {
         let (basis, grid, occupied) = (self.basis, self.grid, fits.cloud.bins.occupied());
-        let mut reduced = 0;
+        let (mut reduced, mut stencil) = (0, Stencil::new());
+        // Points that stand still have no domains.
+        let none = Domains::none();
+        let none = none.views();
         for (place, _) in places.zip(hard).filter(|&(_, &hard)| hard) {
             let mut add = |point: &Point<T, D>, value| {
                 let value = components_of::<T, I::Field>(&value);
                 let parts = I::parts(&value, &[T::one(); D]);
-                let (cell, x) = (&point.cell, &point.position);
                 if point.moves {
-                    let add = |i: usize, phi, gradient| sink(i, Sum::of(&parts, phi, &gradient));
-                    return match point.particle {
-                        Some(p) => fits.domains.for_each((fits.moving, grid), p, (cell, x), add),
-                        None => fits.moving.for_each(grid, cell, x, add),
-                    };
+                    let find = |stencil: &mut Stencil<T, D>, skip| (fits.moving)(point, stencil, skip);
+                    return stencil.for_each_found(find, |i, phi, gradient| {
+                        sink(i, Sum::of(&parts, phi, &gradient));
+                    });
                 }
-                let masses = I::masses(&value);
-                basis.for_each(grid, cell, x, |i, phi, gradient| {
+                let (masses, place) = (I::masses(&value), (&point.cell, &point.position));
+                let here = (basis, grid);
+                stencil.for_each(here, &none, Seer::Moving, place, |i, phi, gradient| {
                     sink(i, Sum::of(&parts, phi, &gradient));
-                    for q in 0..W {
-                        let mass = masses[q] * phi;
-                        basis.for_each(grid, cell, x, |j, other, _| {
-                            if j <= i {
-                                matrix(q, i, j, mass * other);
-                            }
-                        });
-                    }
                 });
+                if W > 0 {
+                    stencil.for_each_pair(here, Seer::Moving, place, |[i, j], [phi, other]| {
+                        for q in 0..W {
+                            matrix(q, i, j, masses[q] * phi * other);
+                        }
+                    });
+                }
             };
             let cell = occupied[place] as usize;
             let full = R::Points::integrate_single(

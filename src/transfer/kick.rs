@@ -6,6 +6,7 @@ use nalgebra::SVector;
 
 use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
+use super::stencil::{Seer, Stencil};
 use super::sums::{Parts, Sum, Sums};
 use super::{Sites, Sweep};
 use crate::basis::BasisFamily;
@@ -85,23 +86,38 @@ pub(crate) fn kick<
         ));
     }
     let mut totals = [Momentum::zero(); C];
-    let mut sums = StencilSums::new(basis, grid);
+    let (mut stencil, mut sums) = (Stencil::new(), StencilSums::new());
     for (p, place) in sites.cells.iter().zip(sites.positions).enumerate() {
         let mut a = [[T::zero(); D]; C];
-        sites.domains.for_each((basis, grid), p, place, |i, phi, _| {
-            for q in 0..C {
-                for c in 0..D {
-                    a[q][c] += fields[q][i][c] * phi;
+        stencil.for_each(
+            (basis, grid),
+            &sites.domains,
+            Seer::Particle(p),
+            place,
+            #[inline(always)]
+            |i, phi, _| {
+                for q in 0..C {
+                    for c in 0..D {
+                        a[q][c] += fields[q][i][c] * phi;
+                    }
                 }
-            }
-        });
+            },
+        );
         let momenta = what.take::<One, 1, true>(One, Group { first: p, count: 1 }, &a);
         for q in 0..C {
             totals[q].momentum += SVector::from(momenta[q]);
             totals[q].scale += size(&momenta[q]);
         }
         if M > 0 {
-            sums.add((p, place), &sites.domains, &parts(&momenta), None, &mut sink);
+            let space = (basis, grid, &mut stencil);
+            sums.add(
+                space,
+                (p, place),
+                &sites.domains,
+                &parts(&momenta),
+                None,
+                &mut sink,
+            );
         }
     }
     if M > 0 {
@@ -161,7 +177,7 @@ fn in_packs<
     each_group(cells, &mut groups);
     let (momenta, scales) = (groups.momenta, groups.scales);
     if M > 0 {
-        groups.sums.flush(k, sweep, &mut groups.sink);
+        groups.sums.end(k, sweep, &mut groups.sink);
     }
     let mut totals = [Momentum::zero(); C];
     for q in 0..C {

@@ -39,6 +39,7 @@ mod polynomials;
 mod rows;
 mod scalars;
 mod sites;
+mod stencil;
 mod sums;
 
 pub(crate) use drift::{Drift, Outcome, drift};
@@ -53,6 +54,7 @@ pub(crate) use pairs::{sum_pairs, sums_apply};
 pub(crate) use places::DofPlaces;
 pub(crate) use scalars::{ScalarField, g2p};
 pub(crate) use sites::Sites;
+pub(crate) use stencil::{Seer, Stencil, look_up};
 
 use nalgebra::SVector;
 

@@ -5,6 +5,7 @@ use nalgebra::SVector;
 use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
 use super::places::DofPlaces;
+use super::stencil::Stencil;
 use super::sums::Sums;
 pub(crate) use super::sums::{Parts, Sum};
 use super::{Sites, Sweep};
@@ -61,12 +62,20 @@ pub(crate) fn p2g<
             k, &sweep, sites, what, sink
         ));
     }
-    let mut sums = StencilSums::new(basis, grid);
+    let (mut stencil, mut sums) = (Stencil::new(), StencilSums::new());
     let slopes = [T::one(); D];
     for (p, place) in sites.cells.iter().zip(sites.positions).enumerate() {
         let group = Group { first: p, count: 1 };
         let parts = what.parts::<One, 1, true>(One, group, &slopes);
-        sums.add((p, place), &sites.domains, &parts, what.places(), &mut sink);
+        let space = (basis, grid, &mut stencil);
+        sums.add(
+            space,
+            (p, place),
+            &sites.domains,
+            &parts,
+            what.places(),
+            &mut sink,
+        );
     }
     sums.flush(&mut sink);
 }
@@ -101,7 +110,7 @@ fn in_packs<
         sink,
     };
     each_group(cells, &mut groups);
-    groups.sums.flush(k, sweep, &mut groups.sink);
+    groups.sums.end(k, sweep, &mut groups.sink);
 }
 
 /// The sweep over the groups.

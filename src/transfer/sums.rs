@@ -71,20 +71,19 @@ impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Su
     ) where
         V: Number<T>,
     {
-        if self.cell == Some(*cell) {
-            return self.add_to::<false, T, B, K>(k, sweep, factors, parts);
-        }
-        let first = sweep.first_dof(cell);
-        if self
-            .cell
-            .is_some_and(|last| follows(&last, cell) && first == self.first + 1)
-        {
-            self.flush_column(k, sweep, 0, sink);
+        if self.cell != Some(*cell) {
+            let first = sweep.first_dof(cell);
+            if self
+                .cell
+                .is_some_and(|last| follows(&last, cell) && first == self.first + 1)
+            {
+                self.flush_column(k, sweep, 0, sink);
+                (self.cell, self.first) = (Some(*cell), first);
+                return self.add_to::<true, T, B, K>(k, sweep, factors, parts);
+            }
+            self.end(k, sweep, sink);
             (self.cell, self.first) = (Some(*cell), first);
-            return self.add_to::<true, T, B, K>(k, sweep, factors, parts);
         }
-        self.flush(k, sweep, sink);
-        (self.cell, self.first) = (Some(*cell), first);
         self.add_to::<false, T, B, K>(k, sweep, factors, parts);
     }
 
@@ -190,9 +189,44 @@ impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Su
         }
     }
 
+    /// Whether there are more sums than registers, so that another function may look at them.
+    const fn are_in_memory<T: Scalar, B: BasisFamily<T, D>>() -> bool {
+        B::WIDTH.pow(D as u32) * (S + D * (C + G)) > 16
+    }
+
+    /// [`Sums::flush`] in a function of its own: that takes more code than all the rest of a sweep, and few
+    /// cells are not neighbours along axis 0 of those before them.
+    #[inline(never)]
+    fn flush_apart<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, N, V = V>, const N: usize>(
+        &mut self,
+        k: K,
+        sweep: &Sweep<'_, T, D, B>,
+        sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
+    ) {
+        k.run(
+            #[inline(always)]
+            || self.flush(k, sweep, sink),
+        );
+    }
+
+    /// Hands all sums over where no neighbour follows.
+    #[inline(always)]
+    pub(super) fn end<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, N, V = V>, const N: usize>(
+        &mut self,
+        k: K,
+        sweep: &Sweep<'_, T, D, B>,
+        sink: &mut impl FnMut(usize, Sum<T, D, S, C, G>),
+    ) {
+        if const { Self::are_in_memory::<T, B>() } {
+            self.flush_apart(k, sweep, sink);
+        } else {
+            self.flush(k, sweep, sink);
+        }
+    }
+
     /// Hands all sums over and starts again.
     #[inline(always)]
-    pub(super) fn flush<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, N, V = V>, const N: usize>(
+    fn flush<T: Scalar, B: BasisFamily<T, D>, K: Packs<T, N, V = V>, const N: usize>(
         &mut self,
         k: K,
         sweep: &Sweep<'_, T, D, B>,

@@ -25,7 +25,7 @@ use crate::field::Field;
 use crate::mass::ParticleMatrix;
 use crate::parallel::CELLS;
 use crate::scalar::Scalar;
-use crate::simd::{LANES, Packs, dispatch};
+use crate::simd::{LANES, Packs};
 use crate::taylor::{FEW_COMPONENTS, MOST_COMPONENTS, are_few, default_tolerance};
 use cells::{Kind, RelaxedCell};
 use four::{FourFits, KeptProducts};
@@ -219,14 +219,20 @@ impl<T: Scalar, const D: usize, const NB: usize> Filters<T, D, RelaxedTaylor<T, 
     fn relax<Q: Field<T>>(
         fits: &mut RelaxedTaylor<T, D, NB>,
         cloud: &Cloud<'_, T, D>,
-        weights: Option<&[T]>,
         crossed: &[CourantNumbers<T>],
         values: &mut [Q],
     ) {
-        match weights {
-            None => fits.relax_towards_both(cloud, crossed, values),
-            Some(weights) => fits.relax_towards_own(cloud, weights, crossed, values),
-        }
+        fits.relax_towards_both(cloud, crossed, values);
+    }
+
+    fn relax_weighted<Q: Field<T>>(
+        fits: &mut RelaxedTaylor<T, D, NB>,
+        cloud: &Cloud<'_, T, D>,
+        weights: &[T],
+        crossed: &[CourantNumbers<T>],
+        values: &mut [Q],
+    ) {
+        fits.relax_towards_own(cloud, weights, crossed, values);
     }
 
     fn filling(fits: &RelaxedTaylor<T, D, NB>, place: usize) -> Filling {
@@ -250,7 +256,7 @@ impl<T: Scalar, const D: usize, const NB: usize> CellStream<T, D> for RelaxedTay
         value: impl Fn(usize) -> Q,
         mut sink: impl FnMut(&Point<T, D>, Q),
     ) {
-        dispatch!(T, |k| self.integrate_in(k, cloud, cells, &value, &mut sink));
+        self.integrate_each(cloud, cells, &value, &mut sink);
     }
 }
 

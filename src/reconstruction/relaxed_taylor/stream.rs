@@ -89,15 +89,28 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         self.fits[group].integrated(k, group, &self.grams[group], &sums)
     }
 
-    /// Streams the fits of whole cells, four at a time, and the other ones.
+    /// Streams the fits of whole cells, four at a time, and the other ones. Compiled once for all bases: what
+    /// a point is handed to is called through a pointer. Steps come here where four cells cannot be
+    /// integrated at once only.
+    #[inline(never)]
+    pub(super) fn integrate_each<Q: Field<T>>(
+        &self,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        value: &dyn Fn(usize) -> Q,
+        sink: &mut dyn FnMut(&Point<T, D>, Q),
+    ) {
+        dispatch!(T, |k| self.integrate_in(k, cloud, cells, value, sink));
+    }
+
     #[inline(always)]
-    pub(super) fn integrate_in<K: Packs<T>, Q: Field<T>>(
+    fn integrate_in<K: Packs<T>, Q: Field<T>>(
         &self,
         k: K,
         cloud: &Cloud<'_, T, D>,
         cells: Range<usize>,
-        value: &impl Fn(usize) -> Q,
-        sink: &mut impl FnMut(&Point<T, D>, Q),
+        value: &dyn Fn(usize) -> Q,
+        mut sink: &mut dyn FnMut(&Point<T, D>, Q),
     ) {
         // A copy: a compiler then knows that what is written leaves it alone.
         let cloud = &{ *cloud };
@@ -119,7 +132,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
                 }
             }
             let patch = Patch::whole(cloud.grid, cloud.bins.occupied()[place] as usize);
-            self.rule.emit(&patch, &of_cell, sink);
+            self.rule.emit(&patch, &of_cell, &mut sink);
         }
     }
 

@@ -152,9 +152,10 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         &self,
         cloud: &Cloud<'_, T, D>,
         place: usize,
-        value: &impl Fn(usize) -> Q,
+        value: &dyn Fn(usize) -> Q,
     ) -> [Q; NB] {
         let (fits, cell) = self.at(cloud, place);
+        let value = &value;
         let lent = Self::lent_values(cloud, place, fits.lent.free, |lender| {
             let (fits, cell) = self.at(cloud, lender);
             free(fits, cloud, cell, value)
@@ -170,9 +171,10 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         &self,
         cloud: &Cloud<'_, T, D>,
         place: usize,
-        amount: &impl Fn(usize) -> Q,
+        amount: &dyn Fn(usize) -> Q,
     ) -> [Q; NB] {
         let (fits, cell) = self.at(cloud, place);
+        let amount = &amount;
         let lent = Self::lent_values(cloud, place, fits.lent.conserved, |lender| {
             let (fits, cell) = self.at(cloud, lender);
             conserved(fits, cloud, cell, amount)

@@ -28,6 +28,8 @@ use nalgebra::SVector;
 
 use super::balance::Balance;
 use super::diffusion::refuse_without_capacity;
+use super::order::Order;
+use super::spans::Spans;
 use super::{Conservation, Diagnostics, Stepper, SurfacePoint, domain};
 use crate::basis::BasisFamily;
 use crate::error::RestoreError;
@@ -60,23 +62,12 @@ where
     /// Those of `out`, and [`io::ErrorKind::Unsupported`] for scalars other than `f64` and `f32`.
     pub fn save(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut out = Out::new::<T>(out)?;
-        self.shape()
-            .into_iter()
-            .try_for_each(|(_, value)| out.count(value))?;
-        save_window(&self.grid, &mut out)?;
-        out.flag(self.strayed)?;
-        out.numbers(&[self.time])?;
-        out.count(self.steps)?;
-        self.diagnostics.save(&mut out)?;
-        self.balance.save(&mut out)?;
+        let progress = (self.strayed, self.time, self.steps);
+        let sums = (&self.diagnostics, &self.balance);
+        save_progress(&mut out, self.shape(), &self.grid, progress, sums)?;
         self.particles.save(&mut out)?;
         out.records(&self.memory)?;
-        for point in &self.surface {
-            out.count(point.particle)?;
-        }
-        out.indices(self.bins.cells().as_flattened())?;
-        self.order.save(&mut out)?;
-        self.spans.save(&mut out)
+        save_places(&mut out, &self.surface, &self.bins, &self.order, &self.spans)
     }
 
     /// Takes over what [`Stepper::save`] wrote, of a stepper with the same setup. DOF velocities are those of
@@ -87,36 +78,30 @@ where
     /// neither the old nor the new one: such a stepper is of no further use.
     pub fn restore(&mut self, from: &mut dyn Read) -> Result<(), RestoreError> {
         let mut from = In::new::<T>(from)?;
-        restore_shape(&mut from, self.shape())?;
-        let window = read_window(&mut from)?;
-        let strayed = from.flag()?;
+        let (window, strayed) = read_window(&mut from, self.shape())?;
         self.take_window(window)?;
         self.strayed = strayed;
-        from.numbers(std::slice::from_mut(&mut self.time))?;
-        self.steps = from.count()?;
-        self.diagnostics.restore(&mut from)?;
-        self.balance.restore(&mut from)?;
+        let progress = (&mut self.time, &mut self.steps);
+        restore_progress(&mut from, progress, &mut self.diagnostics, &mut self.balance)?;
         self.particles.restore(&mut from, self.law.numbers())?;
         from.records("what the transfer remembers of particle", &mut self.memory)?;
-        refuse_without_capacity(&self.phase, &self.particles, |place| place)?;
-        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, |place| place)?;
-        restore_surface(&mut self.surface, &mut from, self.particles.len())?;
-        restore_cells(&mut self.bins, &mut from, &self.grid, self.strayed)?;
-        self.order.load(&mut from)?;
+        refuse_without_capacity(&self.phase, &self.particles, &|place| place)?;
+        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, &|place| place)?;
         // Windows overlap, and a matrix has so many numbers for each DOF.
         let width = 1 + self.basis.half_band(&self.grid);
         let most = 16 * width * (self.dof_count() + self.particles.len());
-        self.spans.restore(&mut from, (&self.grid, &self.bins), most)
+        let places = (&mut self.surface[..], &mut self.bins, &mut self.order);
+        restore_places(
+            &mut from,
+            places,
+            (&self.grid, self.strayed),
+            &mut self.spans,
+            most,
+        )
     }
 
-    /// What two steppers must have in common, by names.
-    fn shape(&self) -> impl IntoIterator<Item = (&'static str, usize)> + use<T, D, B, R, L, P, X> {
-        let kind = [("axes", D), ("bytes to a number", size_of::<T>())];
-        let cells = self.grid.cells().into_iter().enumerate();
-        let cells = cells.map(|(axis, count)| (CELLS_ALONG.get(axis).copied().unwrap_or("cells"), count));
-        let (particles, surfaces) = (self.particles.len(), self.surface.len());
-        let counts = [("particles", particles), ("surfaces", surfaces)];
-        kind.into_iter().chain(cells).chain(counts)
+    fn shape(&self) -> Vec<(&'static str, usize)> {
+        shape_of::<T, D>(&self.grid, self.particles.len(), self.surface.len())
     }
 
     /// Takes over the window of cells that was read.
@@ -137,15 +122,80 @@ where
 
 const CELLS_ALONG: [&str; 3] = ["cells along x", "cells along y", "cells along z"];
 
+/// What two steppers must have in common, by names.
+fn shape_of<T: Scalar, const D: usize>(
+    grid: &Grid<T, D>,
+    particles: usize,
+    surfaces: usize,
+) -> Vec<(&'static str, usize)> {
+    let mut shape = vec![("axes", D), ("bytes to a number", size_of::<T>())];
+    shape.extend(CELLS_ALONG.into_iter().zip(grid.cells()));
+    shape.extend([("particles", particles), ("surfaces", surfaces)]);
+    shape
+}
+
+// Functions of what they look at: what follows is the same for all methods, and each `?` is code.
+
+/// Writes what two steppers must have in common and how far this one is.
 #[inline(never)]
-fn restore_shape(
+fn save_progress<T: Scalar, const D: usize>(
+    out: &mut Out<'_>,
+    shape: Vec<(&'static str, usize)>,
+    grid: &Grid<T, D>,
+    (strayed, time, steps): (bool, T, usize),
+    (diagnostics, balance): (&Diagnostics<T>, &Balance<T, D>),
+) -> io::Result<()> {
+    shape.into_iter().try_for_each(|(_, value)| out.count(value))?;
+    save_window(grid, out)?;
+    out.flag(strayed)?;
+    out.numbers(&[time])?;
+    out.count(steps)?;
+    diagnostics.save(out)?;
+    balance.save(out)
+}
+
+#[inline(never)]
+fn restore_progress<T: Scalar, const D: usize>(
     from: &mut In<'_>,
-    shape: impl IntoIterator<Item = (&'static str, usize)>,
+    (time, steps): (&mut T, &mut usize),
+    diagnostics: &mut Diagnostics<T>,
+    balance: &mut Balance<T, D>,
 ) -> Result<(), RestoreError> {
-    for (what, expected) in shape {
-        from.expect(what, expected)?;
+    from.numbers(std::slice::from_mut(time))?;
+    *steps = from.count()?;
+    diagnostics.restore(from)?;
+    balance.restore(from)
+}
+
+/// Writes where particles are, in which order, and how they are cut into spans.
+#[inline(never)]
+fn save_places<T: Scalar, const D: usize>(
+    out: &mut Out<'_>,
+    surface: &[SurfacePoint<T>],
+    bins: &Bins<D>,
+    order: &Order,
+    spans: &Spans<T, D>,
+) -> io::Result<()> {
+    for point in surface {
+        out.count(point.particle)?;
     }
-    Ok(())
+    out.indices(bins.cells().as_flattened())?;
+    order.save(out)?;
+    spans.save(out)
+}
+
+#[inline(never)]
+fn restore_places<T: Scalar, const D: usize>(
+    from: &mut In<'_>,
+    (surface, bins, order): (&mut [SurfacePoint<T>], &mut Bins<D>, &mut Order),
+    (grid, strayed): (&Grid<T, D>, bool),
+    spans: &mut Spans<T, D>,
+    most: usize,
+) -> Result<(), RestoreError> {
+    restore_surface(surface, from, bins.len())?;
+    restore_cells(bins, from, grid, strayed)?;
+    order.load(from)?;
+    spans.restore(from, (grid, bins), most)
 }
 
 #[inline(never)]
@@ -158,14 +208,21 @@ fn save_window<T: Scalar, const D: usize>(grid: &Grid<T, D>, out: &mut Out<'_>) 
     Ok(())
 }
 
+/// Checks what two steppers must have in common, and reads the window and whether it is to be laid anew.
 #[inline(never)]
-fn read_window<const D: usize>(from: &mut In<'_>) -> Result<Window<D>, RestoreError> {
+fn read_window<const D: usize>(
+    from: &mut In<'_>,
+    shape: Vec<(&'static str, usize)>,
+) -> Result<(Window<D>, bool), RestoreError> {
+    for (what, expected) in shape {
+        from.expect(what, expected)?;
+    }
     let (mut first, mut shape) = ([0; D], [0; D]);
     from.indices(&mut first)?;
     for count in &mut shape {
         *count = from.count()?;
     }
-    Ok(Window::new(first, shape))
+    Ok((Window::new(first, shape), from.flag()?))
 }
 
 #[inline(never)]

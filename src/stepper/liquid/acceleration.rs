@@ -27,7 +27,7 @@ where
     /// Implicit drag takes the velocities at the end of the step, `v + dt a`: two equations in two unknowns a
     /// DOF, here solved without products of masses, which would underflow in nearly empty cells.
     pub(in super::super) fn accelerate_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        if R::Mass::IN_ACCELERATION {
+        if const { R::Mass::IN_ACCELERATION } {
             return self.solve_both(dt, forcing);
         }
         let mixture = Mixture {

@@ -44,16 +44,10 @@ where
             cuts: &self.cuts,
         };
         let reconstruction = &mut self.reconstruction;
-        R::Filter::relax(reconstruction, &cloud, None, crossed, state);
-        R::Filter::relax(
-            reconstruction,
-            &cloud,
-            Some(&liquid_mass[..]),
-            crossed,
-            liquid_velocity,
-        );
-        let mass = Some(&particles.mass[..]);
-        R::Filter::relax(reconstruction, &cloud, mass, crossed, &mut particles.velocity);
+        R::Filter::relax(reconstruction, &cloud, crossed, state);
+        R::Filter::relax_weighted(reconstruction, &cloud, liquid_mass, crossed, liquid_velocity);
+        let mass = &particles.mass[..];
+        R::Filter::relax_weighted(reconstruction, &cloud, mass, crossed, &mut particles.velocity);
         self.take_in_relaxed();
     }
 

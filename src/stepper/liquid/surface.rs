@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::super::acceleration::Walls;
+use super::super::forces::{add_load, each_seen};
 use super::super::{FaceCondition, Forcing, PoreCondition, Stepper, SurfacePoint};
 use super::seal::{Answer, Place, Seal};
 use crate::basis::BasisFamily;
@@ -86,22 +87,10 @@ where
     /// that particles as quadrature points are exact there; a point load against their sum is not. Beyond one
     /// dimension no even state fits a load, and none is taken.
     pub(in super::super) fn uniform_load(&self, forcing: &Forcing<T, D>) -> UniformLoad<T> {
-        let mut even = UniformLoad::none();
-        if D > 1 || !P::FLOWS {
-            return even;
+        if const { D > 1 || !P::FLOWS } {
+            return UniformLoad::none();
         }
-        let free = |point: &&SurfacePoint<T>| !is_held(forcing, point);
-        if let Some(point) = self.surface.iter().find(free) {
-            even.stress = traction(forcing, point)[0] * point.outward();
-        }
-        let pressures = self.surface.iter().map(|point| forcing.pores(point.face));
-        for condition in pressures {
-            if let PoreCondition::Pressure(pressure) = condition {
-                even.pressure = pressure;
-                break;
-            }
-        }
-        even
+        uniform_load(&self.surface, forcing)
     }
 
     /// What loads the surfaces besides the even part: tractions on the whole, pressures on the liquid where
@@ -120,11 +109,11 @@ where
                 PoreCondition::Sealed => T::zero(),
             };
             let (cell, x) = self.loaded_place(point);
-            let (whole, liquid) = (&mut self.dofs.force, &mut self.liquid.force);
-            self.basis.for_each(&self.grid, &cell, &x, |i, phi, _| {
-                whole[i] += load * (area * phi);
-                liquid[i][axis] += pressure * area * phi;
-            });
+            let mut on_liquid = SVector::zeros();
+            on_liquid[axis] = pressure * area;
+            let (space, place) = ((&self.basis, &self.grid), (&cell, &x));
+            add_load(space, place, &(load * area), &mut self.dofs.force);
+            add_load(space, place, &on_liquid, &mut self.liquid.force);
         }
     }
 
@@ -148,15 +137,14 @@ where
                 continue;
             }
             let x = self.surface_position(point);
-            let (basis, grid) = (&self.basis, &self.grid);
+            let space = (&self.basis, &self.grid);
             let place = Place {
                 face: point.face,
                 layer,
                 shape,
             };
-            self.seal.add_point(&place, point.area, &mut |add| {
-                basis.for_each(grid, cell, &x, |i, phi, _| add(i, phi));
-            });
+            self.seal
+                .add_point(&place, point.area, &mut |add| each_seen(space, (cell, &x), add));
         }
         number_components(&mut self.seal, Walls::of_both(&self.face_dofs, forcing));
     }
@@ -187,6 +175,26 @@ where
             Drag::Explicit => T::zero(),
         }
     }
+}
+
+#[inline(never)]
+fn uniform_load<T: Scalar, const D: usize>(
+    surface: &[SurfacePoint<T>],
+    forcing: &Forcing<T, D>,
+) -> UniformLoad<T> {
+    let mut even = UniformLoad::none();
+    let free = |point: &&SurfacePoint<T>| !is_held(forcing, point);
+    if let Some(point) = surface.iter().find(free) {
+        even.stress = traction(forcing, point)[0] * point.outward();
+    }
+    let pressures = surface.iter().map(|point| forcing.pores(point.face));
+    for condition in pressures {
+        if let PoreCondition::Pressure(pressure) = condition {
+            even.pressure = pressure;
+            break;
+        }
+    }
+    even
 }
 
 /// Numbers what the points of the seals look at, and notes what walls hold of it.

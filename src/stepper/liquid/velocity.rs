@@ -25,7 +25,7 @@ where
     /// DOF velocities of both phases at the step's start. The masses of the mapping serve again after the
     /// update: nothing has moved by then.
     pub(in super::super) fn map_both_before(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        if !R::Mass::OF_PARTICLES {
+        if const { !R::Mass::OF_PARTICLES } {
             self.fit_momenta(true);
         }
         self.divide_both(dt, forcing, true);
@@ -40,7 +40,7 @@ where
         }
         let share = self.share_of_drag(dt);
         hold_velocities([&mut self.dofs, &mut self.liquid], &self.drag, walls, share);
-        if R::Mass::IN_ACCELERATION {
+        if const { R::Mass::IN_ACCELERATION } {
             self.seal_mapped_jointly();
         } else {
             self.seal_velocities(dt);

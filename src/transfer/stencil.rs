@@ -1,0 +1,163 @@
+//! The functions at a point, looked up out of line: what sweeps do where no packs serve.
+//!
+//! Point by point a sweep is one of those that few machines take. Functions that are looked up within it
+//! would be compiled into each sweep once more, for every basis; so they are looked up by a function of their
+//! own, compiled once for a basis, and the sweep goes over what that found.
+
+use nalgebra::SVector;
+
+use crate::basis::BasisFamily;
+use crate::grid::{Cell, Grid};
+use crate::particles::{DomainViews, Domains};
+use crate::scalar::Scalar;
+
+/// Functions that are found at once: those of a cell of cubic B-splines in three dimensions.
+const AT_ONCE: usize = 64;
+
+/// Whose functions are looked up: those of a particle, which is given by its number; those at a point that
+/// moves as particles do, or at one that stands still.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Seer {
+    Particle(usize),
+    Moving,
+    Fixed,
+}
+
+/// DOFs that a point sees, with values and gradients of their functions.
+pub(crate) struct Stencil<T, const D: usize> {
+    dofs: [usize; AT_ONCE],
+    values: [T; AT_ONCE],
+    gradients: [SVector<T, D>; AT_ONCE],
+}
+
+impl<T: Scalar, const D: usize> Stencil<T, D> {
+    /// Of no point yet.
+    pub(crate) fn new() -> Self {
+        Self {
+            dofs: [0; AT_ONCE],
+            values: [T::zero(); AT_ONCE],
+            gradients: [SVector::zeros(); AT_ONCE],
+        }
+    }
+
+    /// Calls `f(dof, phi, grad phi)` for the DOFs that are seen from `x` of `cell`. A basis that is no
+    /// product is asked here and now: point by point is the only way that it knows.
+    #[inline(always)]
+    pub(crate) fn for_each<B: BasisFamily<T, D>>(
+        &mut self,
+        (basis, grid): (&B, &Grid<T, D>),
+        domains: &DomainViews<'_, T, D>,
+        seer: Seer,
+        (cell, x): (&Cell<D>, &SVector<T, D>),
+        mut f: impl FnMut(usize, T, SVector<T, D>),
+    ) {
+        if const { B::WIDTH == 0 } {
+            return match seer {
+                Seer::Particle(p) => domains.for_each((basis, grid), p, (cell, x), f),
+                Seer::Moving => basis.for_each(grid, cell, x, f),
+                Seer::Fixed => basis.for_each_at_fixed_point(grid, cell, x, f),
+            };
+        }
+        self.for_each_found(
+            #[inline(always)]
+            |stencil, skip| look_up(stencil, (basis, grid), domains, seer, (cell, x), skip),
+            #[inline(always)]
+            |dof, phi, gradient| f(dof, phi, gradient),
+        );
+    }
+
+    /// The same of functions that `look_up` finds: all but so many first ones, as far as there is room;
+    /// returns how many there are.
+    #[inline(always)]
+    pub(crate) fn for_each_found(
+        &mut self,
+        look_up: impl Fn(&mut Self, usize) -> usize,
+        mut f: impl FnMut(usize, T, SVector<T, D>),
+    ) {
+        let mut skip = 0;
+        loop {
+            let rest = look_up(self, skip).saturating_sub(skip);
+            for n in 0..rest.min(AT_ONCE) {
+                f(self.dofs[n], self.values[n], self.gradients[n]);
+            }
+            if rest <= AT_ONCE {
+                return;
+            }
+            skip += AT_ONCE;
+        }
+    }
+}
+
+impl<T: Scalar, const D: usize> Stencil<T, D> {
+    /// Calls `f([i, j], [phi_i, phi_j])` for each pair of the DOFs that are seen from a point, `j <= i`.
+    #[inline(always)]
+    pub(crate) fn for_each_pair<B: BasisFamily<T, D>>(
+        &mut self,
+        (basis, grid): (&B, &Grid<T, D>),
+        seer: Seer,
+        (cell, x): (&Cell<D>, &SVector<T, D>),
+        mut f: impl FnMut([usize; 2], [T; 2]),
+    ) {
+        let none = Domains::none();
+        let none = none.views();
+        if const { B::WIDTH == 0 } {
+            return each_seen((basis, grid), seer, (cell, x), |i, phi| {
+                each_seen((basis, grid), seer, (cell, x), |j, other| {
+                    if j <= i {
+                        f([i, j], [phi, other]);
+                    }
+                });
+            });
+        }
+        // The functions of a product are few enough to be found at once.
+        let count = look_up(self, (basis, grid), &none, seer, (cell, x), 0).min(AT_ONCE);
+        for n in 0..count {
+            for m in 0..count {
+                if self.dofs[m] <= self.dofs[n] {
+                    f([self.dofs[n], self.dofs[m]], [self.values[n], self.values[m]]);
+                }
+            }
+        }
+    }
+}
+
+/// Calls `f(dof, phi)` for the DOFs that a point that is no particle sees.
+#[inline(always)]
+fn each_seen<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    (basis, grid): (&B, &Grid<T, D>),
+    seer: Seer,
+    (cell, x): (&Cell<D>, &SVector<T, D>),
+    mut f: impl FnMut(usize, T),
+) {
+    match seer {
+        Seer::Fixed => basis.for_each_at_fixed_point(grid, cell, x, |dof, phi, _| f(dof, phi)),
+        _ => basis.for_each(grid, cell, x, |dof, phi, _| f(dof, phi)),
+    }
+}
+
+/// Finds the functions but so many first ones; returns how many there are.
+#[inline(never)]
+pub(crate) fn look_up<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
+    stencil: &mut Stencil<T, D>,
+    (basis, grid): (&B, &Grid<T, D>),
+    domains: &DomainViews<'_, T, D>,
+    seer: Seer,
+    (cell, x): (&Cell<D>, &SVector<T, D>),
+    skip: usize,
+) -> usize {
+    let mut count = 0_usize;
+    let found = |dof: usize, phi: T, gradient: SVector<T, D>| {
+        if let Some(place) = count.checked_sub(skip).filter(|&place| place < AT_ONCE) {
+            stencil.dofs[place] = dof;
+            stencil.values[place] = phi;
+            stencil.gradients[place] = gradient;
+        }
+        count += 1;
+    };
+    match seer {
+        Seer::Particle(p) => domains.for_each((basis, grid), p, (cell, x), found),
+        Seer::Moving => basis.for_each(grid, cell, x, found),
+        Seer::Fixed => basis.for_each_at_fixed_point(grid, cell, x, found),
+    }
+    count
+}
