@@ -112,11 +112,10 @@ fn ratio<T: Scalar>(amount: T, capacity: T) -> T {
     }
 }
 
-/// Refuses a particle that takes in nothing, or whose value is no number; `number` names one at its place.
+/// Refuses a particle that takes in nothing, or whose value is no number.
 pub(super) fn refuse_without_capacity<T: Scalar, const D: usize, S, P: Phase<T, D>>(
     phase: &P,
     particles: &Particles<T, D, S, P::Particle>,
-    number: &dyn Fn(usize) -> usize,
 ) -> Result<(), SetupError> {
     if const { !P::DIFFUSES } {
         return Ok(());
@@ -124,7 +123,7 @@ pub(super) fn refuse_without_capacity<T: Scalar, const D: usize, S, P: Phase<T, 
     let bodies = particles.mass.iter().zip(&particles.volume).zip(&particles.phase);
     for (place, ((&mass, &volume), data)) in bodies.enumerate() {
         let refuse = |name, value: T, allowed| SetupError::Value {
-            particle: number(place),
+            particle: place,
             name,
             value: value.primal(),
             allowed,

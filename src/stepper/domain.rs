@@ -35,20 +35,12 @@ pub(super) fn lay<T: Scalar, const D: usize, B: BasisFamily<T, D>, S, P>(
     }
 }
 
-/// Checks that particles have the domains that the basis asks for, and no others; `number` names a particle
-/// by its place.
+/// Checks that particles have the domains that the basis asks for, and no others.
 pub(super) fn validate<T: Scalar, const D: usize, B: BasisFamily<T, D>, S, P>(
     grid: &Grid<T, D>,
     particles: &Particles<T, D, S, P>,
-    number: &dyn Fn(usize) -> usize,
 ) -> Result<(), SetupError> {
-    validate_kind(
-        B::DOMAIN,
-        grid,
-        &particles.domains,
-        particles.position.len(),
-        number,
-    )
+    validate_kind(B::DOMAIN, grid, &particles.domains, particles.position.len())
 }
 
 /// The same for the domains that a basis asks for: compiled for no basis.
@@ -58,7 +50,6 @@ fn validate_kind<T: Scalar, const D: usize>(
     grid: &Grid<T, D>,
     domains: &Domains<T, D>,
     count: usize,
-    number: &dyn Fn(usize) -> usize,
 ) -> Result<(), SetupError> {
     let (sizes, edges) = match kind {
         Domain::Point => (0, 0),
@@ -79,7 +70,7 @@ fn validate_kind<T: Scalar, const D: usize>(
     }
     let most = match kind {
         Domain::Size { most } => T::lit(most * (1.0 + TOLERANCE)),
-        _ => return validate_edges(&domains.half_edges, number),
+        _ => return validate_edges(&domains.half_edges),
     };
     for (p, half) in domains.half_lengths.iter().enumerate() {
         let in_cells = half.component_mul(grid.inverse_cell_size());
@@ -87,7 +78,7 @@ fn validate_kind<T: Scalar, const D: usize>(
         let fits = |length: &T| *length >= T::zero() && *length <= most;
         if let Some(length) = in_cells.iter().find(|length| !fits(length)) {
             return Err(SetupError::Value {
-                particle: number(p),
+                particle: p,
                 name: "half length in cell sizes",
                 value: length.primal(),
                 allowed: "it must not be negative, nor greater than the basis allows (Domain::Size)",
@@ -97,14 +88,11 @@ fn validate_kind<T: Scalar, const D: usize>(
     Ok(())
 }
 
-fn validate_edges<T: Scalar, const D: usize>(
-    half_edges: &[SMatrix<T, D, D>],
-    number: &dyn Fn(usize) -> usize,
-) -> Result<(), SetupError> {
+fn validate_edges<T: Scalar, const D: usize>(half_edges: &[SMatrix<T, D, D>]) -> Result<(), SetupError> {
     for (p, edges) in half_edges.iter().enumerate() {
         if let Some(bad) = edges.iter().find(|component| !component.is_finite()) {
             return Err(SetupError::Value {
-                particle: number(p),
+                particle: p,
                 name: "half edge vector",
                 value: bad.primal(),
                 allowed: "it must be finite",

@@ -635,7 +635,7 @@ where
     let (basis, particles, memory) = (&setup.basis, &mut setup.particles, &mut setup.memory);
     check_material(&setup.law, &setup.phase, particles)?;
     domain::lay::<T, D, B, _, _>(&setup.grid, particles);
-    domain::validate::<T, D, B, _, _>(&setup.grid, particles, &|p| p)?;
+    domain::validate::<T, D, B, _, _>(&setup.grid, particles)?;
     if P::FLOWS && R::Mass::IN_ACCELERATION && D > 1 {
         return Err(SetupError::OnePhaseOnly);
     }
@@ -673,7 +673,7 @@ fn check_material<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
     particles.validate_with(law.numbers())?;
     phase.validate()?;
     refuse_unknown_stress(law, particles)?;
-    diffusion::refuse_without_capacity(phase, particles, &|p| p)
+    diffusion::refuse_without_capacity(phase, particles)
 }
 
 /// Checks where surfaces and particles are, and moves the latter off the edges of their cells.

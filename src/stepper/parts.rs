@@ -85,8 +85,8 @@ where
         }
         self.particles.validate_with(self.law.numbers())?;
         refuse_unknown_stress(&self.law, &self.particles)?;
-        refuse_without_capacity(&self.phase, &self.particles, &|place| place)?;
-        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, &|place| place)?;
+        refuse_without_capacity(&self.phase, &self.particles)?;
+        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles)?;
         let positions = &self.particles.position;
         self.bins =
             Bins::without_lists(&self.grid, positions).map_err(|Outside(place)| SetupError::Outside {
@@ -244,7 +244,8 @@ mod tests {
         };
         let number = numbers[place] as usize;
         type Number = <NeoHookean<f64> as LawSweep<f64, 2>>::Number;
-        let edits: [fn(&mut Particles<f64, 2, Number>, usize); 4] = [
+        type Edit = fn(&mut Particles<f64, 2, Number>, usize);
+        let edits: [Edit; 4] = [
             |all, p| all.stress[p][0] = f64::NAN,
             |all, p| all.volume[p] = 0.0,
             |all, p| all.velocity[p][1] = f64::INFINITY,

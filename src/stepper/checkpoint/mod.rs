@@ -85,8 +85,8 @@ where
         restore_progress(&mut from, progress, &mut self.diagnostics, &mut self.balance)?;
         self.particles.restore(&mut from, self.law.numbers())?;
         from.records("what the transfer remembers of particle", &mut self.memory)?;
-        refuse_without_capacity(&self.phase, &self.particles, &|place| place)?;
-        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles, &|place| place)?;
+        refuse_without_capacity(&self.phase, &self.particles)?;
+        domain::validate::<T, D, B, _, _>(&self.grid, &self.particles)?;
         // Windows overlap, and a matrix has so many numbers for each DOF.
         let width = 1 + self.basis.half_band(&self.grid);
         let most = 16 * width * (self.dof_count() + self.particles.len());

@@ -61,7 +61,6 @@ where
     let [by_matrices, by_points] = &mut found;
     let none = Domains::none();
     let fits = Fits {
-        // Fits stream points that stand still.
         moving: &|point, stencil, skip| {
             let place = (&point.cell, &point.position);
             look_up(stencil, (basis, grid), &none.views(), Seer::Moving, place, skip)
