@@ -285,13 +285,9 @@ impl<T: Scalar, const D: usize> Store<T, D> {
         // Sweeps that have no momenta put forces where others put momenta.
         let (of_momenta, of_forces) = self.vectors.split_at_mut(C);
         (
-            windows(
-                spans,
-                &mut self.scalars,
-                targets.scalars.each_mut().map(|t| &mut **t),
-            ),
-            windows(spans, of_momenta, targets.vectors.each_mut().map(|t| &mut **t)),
-            windows(spans, of_forces, targets.forces.each_mut().map(|t| &mut **t)),
+            windows(spans, &mut self.scalars, lent(&mut targets.scalars)),
+            windows(spans, of_momenta, lent(&mut targets.vectors)),
+            windows(spans, of_forces, lent(&mut targets.forces)),
         )
     }
 
@@ -312,6 +308,33 @@ impl<T: Scalar, const D: usize> Store<T, D> {
             add_up(spans, store, target, 1);
         }
     }
+}
+
+// Functions of the numbers that they look at: closures of those above them would be compiled for every sweep.
+
+/// The windows of one span, which begin with the DOF `first`.
+fn opened<'a, Q: Copy + num_traits::Zero + Send, const N: usize>(
+    windows: [Windows<'a, Q>; N],
+    first: &mut usize,
+) -> [&'a mut [Q]; N] {
+    windows.map(|window| {
+        let (start, values) = window.one();
+        *first = start;
+        values
+    })
+}
+
+/// The same slices, full of zeros.
+fn emptied<Q: Copy + num_traits::Zero, const N: usize>(slices: [&mut [Q]; N]) -> [&mut [Q]; N] {
+    slices.map(|values| {
+        values.fill(Q::zero());
+        values
+    })
+}
+
+/// The same slices, borrowed for a while.
+fn lent<'a, Q, const N: usize>(slices: &'a mut [&mut [Q]; N]) -> [&'a mut [Q]; N] {
+    slices.each_mut().map(|values| &mut **values)
 }
 
 /// The windows of one span.
@@ -337,21 +360,9 @@ impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usi
     pub(super) fn new((scalars, vectors, forces): AllWindows<'a, T, D, S, C, G>) -> Self {
         let mut first = 0;
         Self {
-            scalars: scalars.map(|window| {
-                let (start, values) = window.one();
-                first = start;
-                values
-            }),
-            vectors: vectors.map(|window| {
-                let (start, values) = window.one();
-                first = start;
-                values
-            }),
-            forces: forces.map(|window| {
-                let (start, values) = window.one();
-                first = start;
-                values
-            }),
+            scalars: opened(scalars, &mut first),
+            vectors: opened(vectors, &mut first),
+            forces: opened(forces, &mut first),
             first,
         }
     }
@@ -365,18 +376,9 @@ impl<'a, T: Scalar, const D: usize, const S: usize, const C: usize, const G: usi
         } = targets;
         Self {
             first: 0,
-            scalars: scalars.map(|values| {
-                values.fill(T::zero());
-                values
-            }),
-            vectors: vectors.map(|values| {
-                values.fill(SVector::zeros());
-                values
-            }),
-            forces: forces.map(|values| {
-                values.fill(SVector::zeros());
-                values
-            }),
+            scalars: emptied(scalars),
+            vectors: emptied(vectors),
+            forces: emptied(forces),
         }
     }
 

@@ -178,14 +178,17 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     #[inline(always)]
     fn kind(&self, cell: &Cell<D>) -> [usize; D] {
         let cells = self.grid.cells();
-        std::array::from_fn(|axis| {
-            let (below, above) = (cell[axis] as usize, cells[axis] - 1 - cell[axis] as usize);
-            if below < MOST_WIDTH || above < MOST_WIDTH {
-                below + MOST_WIDTH
-            } else {
-                0
-            }
-        })
+        each(
+            #[inline(always)]
+            |axis| {
+                let (below, above) = (cell[axis] as usize, cells[axis] - 1 - cell[axis] as usize);
+                if below < MOST_WIDTH || above < MOST_WIDTH {
+                    below + MOST_WIDTH
+                } else {
+                    0
+                }
+            },
+        )
     }
 
     /// Whether cells that ascend follow each other along axis 0, and their DOFs too.
@@ -252,7 +255,11 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
         let mut numbers = kept.chunks_exact_mut(R::KEPT.max(1));
         for first in cells.clone().step_by(LANES) {
             let places = first..cells.end.min(first + LANES);
-            let four = batch_of_cells(cloud, places.clone()).map(|(_, cell)| cell);
+            let batch = batch_of_cells(cloud, places.clone());
+            let four = each(
+                #[inline(always)]
+                |l| batch[l].1,
+            );
             let kept = Kept {
                 numbers: numbers.next().unwrap_or_default(),
                 fresh: fits.fresh,
