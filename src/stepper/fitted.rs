@@ -20,8 +20,8 @@ use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Values};
 use crate::scalar::Scalar;
 use crate::simd::LANES;
 use crate::transfer::{
-    self, Fits, Integrand, MassesAndMomenta, Parts, Seer, Stencil, Stress, Sum, Sweep, at_fixed_points,
-    for_values, look_up,
+    self, Fits, Here, Integrand, Look, MassesAndMomenta, Parts, Seer, Stencil, Stress, Sum, Sweep,
+    at_fixed_points, for_values, look_up,
 };
 
 /// What is fitted, and in which functions it ends up.
@@ -90,7 +90,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
         let amount = amounts(value, I::CONSERVED, cloud.volumes);
         if const { !R::CELLWISE } {
             let sums = InSpan::whole(targets);
-            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, sums);
+            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, Here, sums);
             if const { I::CONSERVED } {
                 self.reconstruction.integrate_conserved(cloud, amount, sink);
             } else {
@@ -144,7 +144,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                     ));
                 return reduced.set(found);
             }
-            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, sums);
+            let sink = stream::<I, _, D, _, S, C, G>(basis, cloud, domains, Stencil::new(), sums);
             if const { I::CONSERVED } {
                 reconstruction.integrate_conserved_cells(cloud, cells, amount, sink);
             } else {
@@ -204,6 +204,7 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(
                 basis,
                 cloud,
+                Here,
                 InSpan::whole(targets).into_sink(),
                 into_rows(rows, 0, half_band),
             );
@@ -263,7 +264,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
                 );
                 return;
             }
-            let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, sink, matrix);
+            let sink =
+                stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, Stencil::new(), sink, matrix);
             reconstruction.integrate_conserved_cells(cloud, cells, amount, sink);
         });
         for (store, rows) in matrices.iter().zip(&mut rows) {
@@ -319,7 +321,8 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>, R: Reconstruction<T, D>> F
             return;
         }
         let amount = amounts(densities, true, cloud.volumes);
-        let sink = stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, sink, matrix);
+        let sink =
+            stream_pairs::<MassesAndMomenta<Q>, _, D, _, C>(basis, cloud, Stencil::new(), sink, matrix);
         self.reconstruction.integrate_conserved(cloud, amount, sink);
     }
 }
@@ -424,6 +427,7 @@ fn stream<'a, I, T, const D: usize, B, const S: usize, const C: usize, const G: 
     basis: &'a B,
     cloud: &'a Cloud<'_, T, D>,
     domains: DomainViews<'a, T, D>,
+    mut look: impl Look<T, D> + 'a,
     mut sums: InSpan<'a, T, D, S, C, G>,
 ) -> impl FnMut(&Point<T, D>, I::Field) + 'a
 where
@@ -431,11 +435,10 @@ where
     B: BasisFamily<T, D>,
     I: Integrand<T, D, S, C, G, 0>,
 {
-    let mut stencil = Stencil::new();
     move |point, value| {
         let parts = I::parts(&transfer::components_of::<T, I::Field>(&value), &[T::one(); D]);
         let (here, place) = ((basis, cloud.grid), (&point.cell, &point.position));
-        stencil.for_each(here, &domains, seer_of(point), place, |dof, phi, gradient| {
+        look.for_each(here, &domains, seer_of(point), place, |dof, phi, gradient| {
             sums.add(dof, Sum::of(&parts, phi, &gradient));
         });
     }
@@ -446,6 +449,7 @@ where
 fn stream_pairs<'a, I, T, const D: usize, B, const C: usize>(
     basis: &'a B,
     cloud: &'a Cloud<'_, T, D>,
+    mut look: impl Look<T, D> + 'a,
     mut sink: impl FnMut(usize, Sum<T, D, 0, C, 0>) + 'a,
     mut matrix: impl FnMut(usize, usize, usize, T) + 'a,
 ) -> impl FnMut(&Point<T, D>, I::Field) + 'a
@@ -454,17 +458,16 @@ where
     B: BasisFamily<T, D>,
     I: Integrand<T, D, 0, C, 0, C>,
 {
-    let mut stencil = Stencil::new();
     move |point, value| {
         let value = transfer::components_of::<T, I::Field>(&value);
         let parts: Parts<T, D, 0, C, 0> = I::parts(&value, &[T::one(); D]);
         let masses: [T; C] = I::masses(&value);
         let (here, place) = ((basis, cloud.grid), (&point.cell, &point.position));
         let none = Domains::none();
-        stencil.for_each(here, &none.views(), Seer::Fixed, place, |i, phi, gradient| {
+        look.for_each(here, &none.views(), Seer::Fixed, place, |i, phi, gradient| {
             sink(i, Sum::of(&parts, phi, &gradient));
         });
-        stencil.for_each_pair(here, Seer::Fixed, place, |[i, j], [phi, other]| {
+        look.for_each_pair(here, Seer::Fixed, place, |[i, j], [phi, other]| {
             for q in 0..C {
                 matrix(q, i, j, masses[q] * phi * other);
             }

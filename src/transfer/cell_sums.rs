@@ -8,7 +8,7 @@ use nalgebra::SVector;
 
 use super::p2g::Parts;
 use super::places::DofPlaces;
-use super::stencil::{Seer, Stencil};
+use super::stencil::{Look, Seer, Stencil};
 use super::sums::Sum;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};

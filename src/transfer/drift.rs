@@ -10,7 +10,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Sweep;
 use super::group::{Group, come_in_eights};
-use super::stencil::{Seer, Stencil};
+use super::stencil::{Look, Seer, Stencil};
 use crate::basis::{BasisFamily, Domain};
 use crate::grid::{Cell, Grid};
 use crate::particles::{DomainViews, Places, settle};

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::Sweep;
 use super::pairs::PairSums;
 use super::polynomials::{CellMatrices, MOST_FUNCTIONS};
-use super::stencil::{Seer, Stencil};
+use super::stencil::{Look, Seer, Stencil};
 use super::sums::{Parts, Sum, Sums};
 use crate::basis::{BasisFamily, Factors, MOST_WIDTH};
 use crate::field::{Field, MassMomentum, Pair, Symmetric, symmetric_component};

@@ -6,7 +6,7 @@ use nalgebra::SVector;
 
 use super::cell_sums::StencilSums;
 use super::group::{EachGroup, Group, come_in_eights, each_group};
-use super::stencil::{Seer, Stencil};
+use super::stencil::{Look, Seer, Stencil};
 use super::sums::{Parts, Sum, Sums};
 use super::{Sites, Sweep};
 use crate::basis::BasisFamily;

@@ -54,7 +54,7 @@ pub(crate) use pairs::{sum_pairs, sums_apply};
 pub(crate) use places::DofPlaces;
 pub(crate) use scalars::{ScalarField, g2p};
 pub(crate) use sites::Sites;
-pub(crate) use stencil::{Seer, Stencil, look_up};
+pub(crate) use stencil::{Here, Look, Seer, Stencil, look_up};
 
 use nalgebra::SVector;
 

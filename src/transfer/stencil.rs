@@ -30,6 +30,67 @@ pub(crate) struct Stencil<T, const D: usize> {
     gradients: [SVector<T, D>; AT_ONCE],
 }
 
+/// A way to look functions up.
+pub(crate) trait Look<T: Scalar, const D: usize> {
+    /// Calls `f(dof, phi, grad phi)` for the DOFs that are seen from `x` of `cell`.
+    fn for_each<B: BasisFamily<T, D>>(
+        &mut self,
+        space: (&B, &Grid<T, D>),
+        domains: &DomainViews<'_, T, D>,
+        seer: Seer,
+        place: (&Cell<D>, &SVector<T, D>),
+        f: impl FnMut(usize, T, SVector<T, D>),
+    );
+
+    /// Calls `f([i, j], [phi_i, phi_j])` for each pair of the DOFs that are seen from a point that is no
+    /// particle, `j <= i`.
+    fn for_each_pair<B: BasisFamily<T, D>>(
+        &mut self,
+        space: (&B, &Grid<T, D>),
+        seer: Seer,
+        place: (&Cell<D>, &SVector<T, D>),
+        f: impl FnMut([usize; 2], [T; 2]),
+    );
+}
+
+/// Within the sweep: for those that steps usually take.
+pub(crate) struct Here;
+
+impl<T: Scalar, const D: usize> Look<T, D> for Here {
+    #[inline(always)]
+    fn for_each<B: BasisFamily<T, D>>(
+        &mut self,
+        (basis, grid): (&B, &Grid<T, D>),
+        domains: &DomainViews<'_, T, D>,
+        seer: Seer,
+        (cell, x): (&Cell<D>, &SVector<T, D>),
+        f: impl FnMut(usize, T, SVector<T, D>),
+    ) {
+        match seer {
+            Seer::Particle(p) => domains.for_each((basis, grid), p, (cell, x), f),
+            Seer::Moving => basis.for_each(grid, cell, x, f),
+            Seer::Fixed => basis.for_each_at_fixed_point(grid, cell, x, f),
+        }
+    }
+
+    #[inline(always)]
+    fn for_each_pair<B: BasisFamily<T, D>>(
+        &mut self,
+        space: (&B, &Grid<T, D>),
+        seer: Seer,
+        place: (&Cell<D>, &SVector<T, D>),
+        mut f: impl FnMut([usize; 2], [T; 2]),
+    ) {
+        each_seen(space, seer, place, |i, phi| {
+            each_seen(space, seer, place, |j, other| {
+                if j <= i {
+                    f([i, j], [phi, other]);
+                }
+            });
+        });
+    }
+}
+
 impl<T: Scalar, const D: usize> Stencil<T, D> {
     /// Of no point yet.
     pub(crate) fn new() -> Self {
@@ -39,11 +100,13 @@ impl<T: Scalar, const D: usize> Stencil<T, D> {
             gradients: [SVector::zeros(); AT_ONCE],
         }
     }
+}
 
-    /// Calls `f(dof, phi, grad phi)` for the DOFs that are seen from `x` of `cell`. A basis that is no
-    /// product is asked here and now: point by point is the only way that it knows.
+/// Out of line. A basis that is no product is asked within the sweep: point by point is the only way that it
+/// knows.
+impl<T: Scalar, const D: usize> Look<T, D> for Stencil<T, D> {
     #[inline(always)]
-    pub(crate) fn for_each<B: BasisFamily<T, D>>(
+    fn for_each<B: BasisFamily<T, D>>(
         &mut self,
         (basis, grid): (&B, &Grid<T, D>),
         domains: &DomainViews<'_, T, D>,
@@ -52,11 +115,7 @@ impl<T: Scalar, const D: usize> Stencil<T, D> {
         mut f: impl FnMut(usize, T, SVector<T, D>),
     ) {
         if const { B::WIDTH == 0 } {
-            return match seer {
-                Seer::Particle(p) => domains.for_each((basis, grid), p, (cell, x), f),
-                Seer::Moving => basis.for_each(grid, cell, x, f),
-                Seer::Fixed => basis.for_each_at_fixed_point(grid, cell, x, f),
-            };
+            return Here.for_each((basis, grid), domains, seer, (cell, x), f);
         }
         self.for_each_found(
             #[inline(always)]
@@ -66,7 +125,33 @@ impl<T: Scalar, const D: usize> Stencil<T, D> {
         );
     }
 
-    /// The same of functions that `look_up` finds: all but so many first ones, as far as there is room;
+    #[inline(always)]
+    fn for_each_pair<B: BasisFamily<T, D>>(
+        &mut self,
+        (basis, grid): (&B, &Grid<T, D>),
+        seer: Seer,
+        (cell, x): (&Cell<D>, &SVector<T, D>),
+        mut f: impl FnMut([usize; 2], [T; 2]),
+    ) {
+        if const { B::WIDTH == 0 } {
+            return Here.for_each_pair((basis, grid), seer, (cell, x), f);
+        }
+        let none = Domains::none();
+        let none = none.views();
+        // The functions of a product are few enough to be found at once.
+        let count = look_up(self, (basis, grid), &none, seer, (cell, x), 0).min(AT_ONCE);
+        for n in 0..count {
+            for m in 0..count {
+                if self.dofs[m] <= self.dofs[n] {
+                    f([self.dofs[n], self.dofs[m]], [self.values[n], self.values[m]]);
+                }
+            }
+        }
+    }
+}
+
+impl<T: Scalar, const D: usize> Stencil<T, D> {
+    /// Calls `f(dof, phi, grad phi)` for the functions that `look_up` finds: all but so many first ones, as far as there is room;
     /// returns how many there are.
     #[inline(always)]
     pub(crate) fn for_each_found(
@@ -84,39 +169,6 @@ impl<T: Scalar, const D: usize> Stencil<T, D> {
                 return;
             }
             skip += AT_ONCE;
-        }
-    }
-}
-
-impl<T: Scalar, const D: usize> Stencil<T, D> {
-    /// Calls `f([i, j], [phi_i, phi_j])` for each pair of the DOFs that are seen from a point, `j <= i`.
-    #[inline(always)]
-    pub(crate) fn for_each_pair<B: BasisFamily<T, D>>(
-        &mut self,
-        (basis, grid): (&B, &Grid<T, D>),
-        seer: Seer,
-        (cell, x): (&Cell<D>, &SVector<T, D>),
-        mut f: impl FnMut([usize; 2], [T; 2]),
-    ) {
-        let none = Domains::none();
-        let none = none.views();
-        if const { B::WIDTH == 0 } {
-            return each_seen((basis, grid), seer, (cell, x), |i, phi| {
-                each_seen((basis, grid), seer, (cell, x), |j, other| {
-                    if j <= i {
-                        f([i, j], [phi, other]);
-                    }
-                });
-            });
-        }
-        // The functions of a product are few enough to be found at once.
-        let count = look_up(self, (basis, grid), &none, seer, (cell, x), 0).min(AT_ONCE);
-        for n in 0..count {
-            for m in 0..count {
-                if self.dofs[m] <= self.dofs[n] {
-                    f([self.dofs[n], self.dofs[m]], [self.values[n], self.values[m]]);
-                }
-            }
         }
     }
 }

@@ -189,9 +189,11 @@ impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Su
         }
     }
 
-    /// Whether there are more sums than registers, so that another function may look at them.
+    /// Whether there are more sums than registers, so that another function may look at them. Along one axis,
+    /// where a compiler sees through all indices, sums that nobody else looks at need not be filled with zeros
+    /// first.
     const fn are_in_memory<T: Scalar, B: BasisFamily<T, D>>() -> bool {
-        B::WIDTH.pow(D as u32) * (S + D * (C + G)) > 16
+        D > 1 && B::WIDTH.pow(D as u32) * (S + D * (C + G)) > 16
     }
 
     /// [`Sums::flush`] in a function of its own: that takes more code than all the rest of a sweep, and few
