@@ -89,14 +89,14 @@ impl<T: Scalar, const D: usize> Borrowed<'_, T, D> {
             spans: self.spans.clone(),
             crossed: self.crossed.clone(),
             relaxed: self.relaxed.clone(),
-            balance: self.balance.clone(),
+            balance: *self.balance,
             contact: self.contact.clone(),
             pairs: self.pairs.clone(),
             body_forces: self.body_forces.clone(),
             face_dofs: self.face_dofs.clone(),
             left_out: self.left_out.clone(),
             surface: self.surface.clone(),
-            diagnostics: self.diagnostics.clone(),
+            diagnostics: *self.diagnostics,
         }
     }
 }

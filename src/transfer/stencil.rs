@@ -112,7 +112,7 @@ impl<T: Scalar, const D: usize> Look<T, D> for Stencil<T, D> {
         domains: &DomainViews<'_, T, D>,
         seer: Seer,
         (cell, x): (&Cell<D>, &SVector<T, D>),
-        mut f: impl FnMut(usize, T, SVector<T, D>),
+        f: impl FnMut(usize, T, SVector<T, D>),
     ) {
         if const { B::WIDTH == 0 } {
             return Here.for_each((basis, grid), domains, seer, (cell, x), f);
@@ -120,8 +120,7 @@ impl<T: Scalar, const D: usize> Look<T, D> for Stencil<T, D> {
         self.for_each_found(
             #[inline(always)]
             |stencil, skip| look_up(stencil, (basis, grid), domains, seer, (cell, x), skip),
-            #[inline(always)]
-            |dof, phi, gradient| f(dof, phi, gradient),
+            f,
         );
     }
 
@@ -212,4 +211,67 @@ pub(crate) fn look_up<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
         Seer::Fixed => basis.for_each_at_fixed_point(grid, cell, x, found),
     }
     count
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::vector;
+
+    use super::*;
+    use crate::basis::{BSpline, DualDomain};
+
+    type Seen = Vec<(usize, f64, SVector<f64, 2>)>;
+
+    fn seen<B: BasisFamily<f64, 2>>(mut look: impl Look<f64, 2>, basis: &B, seer: Seer) -> [Seen; 2] {
+        let grid = Grid::new(vector![0.0, 0.0], vector![5.0, 4.0], [5, 4]).unwrap();
+        let none = Domains::none();
+        let place = (&[3, 1], &vector![3.3, 1.8]);
+        let (mut functions, mut pairs) = (Vec::new(), Vec::new());
+        look.for_each(
+            (basis, &grid),
+            &none.views(),
+            seer,
+            place,
+            |dof, phi, gradient| {
+                functions.push((dof, phi, gradient));
+            },
+        );
+        look.for_each_pair((basis, &grid), seer, place, |[i, j], [phi, other]| {
+            pairs.push((i * 1000 + j, phi * other, vector![phi, other]));
+        });
+        [functions, pairs]
+    }
+
+    #[test]
+    fn functions_are_the_same_wherever_they_are_looked_up() {
+        for seer in [Seer::Moving, Seer::Fixed] {
+            assert_eq!(
+                seen(Here, &BSpline::<2>, seer),
+                seen(Stencil::new(), &BSpline::<2>, seer)
+            );
+            let basis = DualDomain::new();
+            let [functions, pairs] = seen(Stencil::new(), &basis, seer);
+            assert_eq!([&functions, &pairs], seen(Here, &basis, seer).each_ref());
+            // Half of all pairs, and each function with itself.
+            let count = functions.len();
+            assert_eq!(pairs.len(), count * (count + 1) / 2);
+        }
+    }
+
+    #[test]
+    fn more_functions_than_there_is_room_for_come_in_parts() {
+        for count in [0, 1, AT_ONCE, AT_ONCE + 1, 2 * AT_ONCE, 150] {
+            let look_up = |stencil: &mut Stencil<f64, 1>, skip: usize| {
+                for n in skip..count.min(skip + AT_ONCE) {
+                    stencil.dofs[n - skip] = n;
+                    stencil.values[n - skip] = n as f64;
+                }
+                count
+            };
+            let mut found = Vec::new();
+            Stencil::new().for_each_found(look_up, |dof, phi, _| found.push((dof, phi)));
+            let expected: Vec<_> = (0..count).map(|n| (n, n as f64)).collect();
+            assert_eq!(found, expected);
+        }
+    }
 }

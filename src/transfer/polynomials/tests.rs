@@ -10,7 +10,8 @@ use crate::grid::Grid;
 use crate::particles::{Bins, Domains, lattice};
 use crate::reconstruction::{Cloud, Densities, Point, Reconstruction, Stresses, Taylor, Values};
 use crate::transfer::{
-    Fits, Integrand, MassesAndMomenta, Parts, Stress, Sum, Sweep, at_fixed_points, components_of,
+    Fits, Integrand, MassesAndMomenta, Parts, Seer, Stress, Sum, Sweep, at_fixed_points, components_of,
+    look_up,
 };
 
 /// A box of cells, particles in them, and the rule.
@@ -60,15 +61,17 @@ where
     let [by_matrices, by_points] = &mut found;
     let none = Domains::none();
     let fits = Fits {
-        moving: basis,
-        domains: none.views(),
+        moving: &|point, stencil, skip| {
+            let place = (&point.cell, &point.position);
+            look_up(stencil, (basis, grid), &none.views(), Seer::Moving, place, skip)
+        },
         reconstruction: taylor,
         cloud,
         cells: 0..cloud.bins.occupied().len(),
         fresh: false,
     };
     at_fixed_points!(B, basis, |basis| Sweep::new(basis, grid)
-        .integrate::<_, _, I, S, C, G, 0>(
+        .integrate::<_, I, S, C, G, 0>(
             &fits,
             &mut [],
             value,
