@@ -10,6 +10,7 @@ mod equilibrium;
 mod large;
 mod long_waves;
 mod random;
+mod rubbing;
 pub mod sealed;
 mod standing_wave;
 mod threads;
