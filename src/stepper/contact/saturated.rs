@@ -155,7 +155,7 @@ where
         self.detect_contacts(forcing);
         let contacts = self.contact.dofs.contacts.len();
         if contacts != laid {
-            self.seal.reserve(contacts);
+            self.seal.enlarge(contacts);
         }
     }
 

@@ -211,6 +211,11 @@ fn number<T>(weights: &mut [Weight<T>], numbers: &mut Vec<usize>) {
     }
 }
 
+/// Makes room for so many more than there is room for.
+fn enlarge<A>(list: &mut Vec<A>, by: usize) {
+    list.reserve_exact(list.capacity() - list.len() + by);
+}
+
 /// Vectors of the conjugate gradients, an entry each multiplier.
 #[derive(Clone, Debug)]
 struct Gradients<T> {
@@ -324,10 +329,15 @@ impl<T: Scalar> Seal<T> {
     }
 
     /// Makes room for so many points more, each of one function and one trace.
-    pub(in super::super) fn reserve(&mut self, points: usize) {
-        self.points.ends.reserve(points);
-        self.points.functions.reserve(points);
-        self.points.traces.reserve(points);
+    pub(in super::super) fn enlarge(&mut self, points: usize) {
+        let Points {
+            ends,
+            functions,
+            traces,
+        } = &mut self.points;
+        enlarge(ends, points);
+        enlarge(functions, points);
+        enlarge(traces, points);
         let Components {
             numbers,
             held,
@@ -335,14 +345,14 @@ impl<T: Scalar> Seal<T> {
             slip,
             force,
         } = &mut self.components;
-        numbers.reserve(points);
-        held.reserve(points);
-        answers.reserve(points);
-        slip.reserve(points);
-        force.reserve(points);
-        self.gradients.numbers.reserve(points);
+        enlarge(numbers, points);
+        enlarge(held, points);
+        enlarge(answers, points);
+        enlarge(slip, points);
+        enlarge(force, points);
+        enlarge(&mut self.gradients.numbers, points);
         for vector in self.gradients.vectors() {
-            vector.reserve(points);
+            enlarge(vector, points);
         }
     }
 
