@@ -116,7 +116,7 @@ fn a_strip_does_what_the_column_does() {
     }
 }
 
-/// Fields of deformation gradients in place of increments: a law that remembers, under some per cent of strain.
+/// A law that remembers its deformation gradient, under some per cent of strain.
 #[test]
 fn a_strip_of_a_law_that_remembers_does_too() {
     fn neo_hookean<const D: usize>(basis: impl BasisFamily<f64, D>) -> (Vec<[f64; 4]>, f64) {

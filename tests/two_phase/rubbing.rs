@@ -671,3 +671,33 @@ fn the_water_of_a_block_that_sticks_does_not_creep() {
     // Without, it would by some g sin(a) dt.
     assert!(most < 0.01 * G * SLOPE.sin() * 0.1 / f64::from(steps), "{most:e}");
 }
+
+/// A slab that lands on its floor, slides and lifts at its heel: contacts come and go, in room that is there.
+#[test]
+fn no_step_on_a_wall_allocates() {
+    for pores in [PoreCondition::Sealed, PoreCondition::Pressure(0.0)] {
+        let forcing = on_slope::<2>(1, 0.3, pores);
+        let block = Block {
+            from: [2.0, 0.3],
+            to: [10.0, 4.3],
+            ..slab::<2>(1)
+        };
+        let mut stepper = block.stepper(BSpline::<2>, Shepard, |particles| {
+            slide(particles, 0);
+            for (v, liquid) in particles.velocity.iter_mut().zip(&mut particles.phase) {
+                v[1] = -1.0;
+                liquid.velocity[1] = -1.0;
+            }
+        });
+        stepper.step(2e-4, &forcing).unwrap();
+        let mut met = 0;
+        let steps = allocation_counter::measure(|| {
+            for _ in 0..400 {
+                stepper.step(2e-4, &forcing).unwrap();
+                met += usize::from(stepper.wall_impulse(floor(1)).whole[1] > 0.0);
+            }
+        });
+        assert!((50..400).contains(&met), "{met}");
+        assert_eq!(steps.count_total, 0, "{pores:?}");
+    }
+}

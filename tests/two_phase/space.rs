@@ -107,7 +107,7 @@ fn series(height: f64) -> f64 {
     -Q / (Q + M) * steps.sum::<f64>()
 }
 
-/// Heights, pressures and vertical stresses of the particles in space, and whether both phases kept their mass.
+/// Heights, pressures and vertical stresses of the particles in space; both phases must keep their mass.
 fn in_space(up: usize, basis: &str, reconstruction: &str) -> Vec<([f64; 3], f64, f64)> {
     let outcome = run_in::<3>(&column(3, up, basis, reconstruction), None, &mut |_| {}).unwrap();
     let kept = &outcome.summary.conservation;

@@ -120,8 +120,8 @@ where
         action
     }
 
-    /// Whether the operator at hand is symmetric: in one phase the particles' own matrix is what accelerations
-    /// are solved with too, and the estimate for two is made so.
+    /// Whether the operator at hand is symmetric: in one phase the particles' own matrix is what
+    /// accelerations are solved with too, and the estimate for two is made so.
     const SYMMETRIC: bool = match P::FLOWS {
         true => Self::WALLS_BY_SUMS,
         false => R::PARTICLE_MATRIX,
