@@ -191,15 +191,6 @@ pub enum StepError {
         /// What is allowed.
         allowed: &'static str,
     },
-    /// Friction at a face, with a liquid that flows through the pores.
-    #[error(
-        "the face {face} is to rub, but friction is for the solid of one phase; where a liquid flows let it be \
-         held or free"
-    )]
-    FrictionWithFlow {
-        /// The face.
-        face: Face,
-    },
     /// Friction at a face, with particles that take their velocities from the grid.
     #[error(
         "the face {face} is to rub, but particles take their velocities from the grid; with such a transfer let it \

@@ -21,8 +21,8 @@ pub enum FaceCondition<T, const D: usize> {
         acceleration: SVector<T, D>,
     },
     /// A wall at the grid's face that nothing passes, that does not hold what moves away from it, and along
-    /// which material slides with Coulomb's friction. For the solid of one phase; a step of a phase whose
-    /// liquid flows refuses it.
+    /// which material slides with Coulomb's friction. A liquid in the pores does not pass it either and slides
+    /// without friction, or passes it freely ([`PoreCondition`]); friction follows the effective stress.
     Frictional {
         /// Coefficient of friction, not negative; 0 is a smooth wall.
         coefficient: T,
@@ -72,7 +72,8 @@ impl<T: Scalar, const D: usize> FaceCondition<T, D> {
 /// refuses a pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PoreCondition<T> {
-    /// It does not pass: at a held face it moves as the face does, at a body's surface as the solid there.
+    /// It does not pass: at a held face it moves as the face does, at a wall that rubs and at a body's surface
+    /// as the solid there, along the normal.
     #[default]
     Sealed,
     /// It passes freely; this is the pressure outside (Pa, tension positive), 0 where it drains into the
@@ -172,10 +173,6 @@ impl<T: Scalar, const D: usize> Forcing<T, D> {
     /// Refuses what a phase whose liquid flows or which diffuses, or one that does not, does not look at.
     pub(super) fn suits_phase(&self, [flows, diffuses]: [bool; 2]) -> Result<(), StepError> {
         for face in Face::all::<D>() {
-            let rubs = matches!(self.face(face), FaceCondition::Frictional { .. });
-            if flows && rubs {
-                return Err(StepError::FrictionWithFlow { face });
-            }
             if let FaceCondition::Frictional {
                 coefficient,
                 velocity,

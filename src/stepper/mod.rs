@@ -64,6 +64,7 @@ mod velocity;
 mod waves;
 mod window;
 
+pub use contact::WallImpulse;
 pub use critical::{CriticalStep, Mechanism};
 pub use diagnostics::{Conservation, Diagnostics, Energy};
 pub use forcing::{DiffusionCondition, FaceCondition, Forcing, PoreCondition, SurfacePoint};
@@ -309,8 +310,8 @@ where
     /// # Errors
     /// If a particle leaves the grid, its volume is no longer a positive number or its stress unknown to the
     /// law: the particles then hold the state in which that was noticed. If the step's size makes no sense,
-    /// or `forcing` has a condition that the phase does not know (friction where a liquid flows, a pore
-    /// pressure where none does) or a wall that the basis would let slip: nothing has moved then.
+    /// or `forcing` has a condition that the phase does not know (a pore pressure where no liquid flows) or a
+    /// wall that the basis would let slip: nothing has moved then.
     pub fn step(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
         self.step_with_kick(dt, dt, forcing)
     }

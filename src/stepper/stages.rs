@@ -213,6 +213,7 @@ where
     pub(super) fn accelerate(&mut self, dt: T, forcing: &Forcing<T, D>) {
         if const { P::FLOWS } {
             self.accelerate_both(dt, forcing);
+            self.note_pressure_on_walls(dt);
         } else {
             let walls = Walls::of_solid(&self.face_dofs, forcing);
             accelerate(&mut self.dofs, self.mass, &walls, &mut self.balance);

@@ -54,6 +54,6 @@ where
         self.map_momenta_of(&totals);
         self.close_balance(dt, forcing, &totals);
         self.solve_velocities(dt, forcing);
-        self.apply_wall_contact(forcing);
+        self.apply_wall_contact(dt, forcing);
     }
 }

@@ -5,7 +5,7 @@
 
 use materialpoint::basis::{BSpline, BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid};
-use materialpoint::law::{LinearElastic, Moduli};
+use materialpoint::law::{ConstitutiveLaw, LinearElastic, Moduli, NeoHookean};
 use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
@@ -31,30 +31,37 @@ where
     B: BasisFamily<f64, D>,
     R: Reconstruction<f64, D>,
 {
+    let moduli = Moduli::from_young(1e7, 0.0).unwrap();
+    run_with(LinearElastic { moduli }, basis, reconstruction, mass, 1e-3)
+}
+
+/// The same with another law and so much velocity (m/s).
+fn run_with<const D: usize, L, B, R>(
+    law: L,
+    basis: B,
+    reconstruction: R,
+    mass: VelocityMass,
+    velocity: f64,
+) -> (Vec<[f64; 4]>, f64)
+where
+    L: ConstitutiveLaw<f64, D>,
+    B: BasisFamily<f64, D>,
+    R: Reconstruction<f64, D>,
+{
     let max = SVector::from_fn(|a, _| if a == 0 { 1.0 } else { 0.3 });
     let cells = std::array::from_fn(|a| if a == 0 { 10 } else { 3 });
     let grid = Grid::new(SVector::zeros(), max, cells).unwrap();
     let points = lattice(&grid, grid.min(), grid.max(), [4; D]);
-    let mut particles: Particles<f64, D, (), PoreLiquid<f64, D>> =
+    let mut particles: Particles<f64, D, L::State, PoreLiquid<f64, D>> =
         Particles::at_rest(&points, PHASE.dry_density());
     for p in 0..particles.len() {
         let s = (std::f64::consts::PI * particles.position[p][0]).sin();
         particles.velocity[p][0] = 1e-3 * s;
-        particles.phase[p].velocity[0] = 2e-3 * s;
+        particles.phase[p].velocity[0] = 2.0 * velocity * s;
     }
-    let moduli = Moduli::from_young(1e7, 0.0).unwrap();
-    let mut stepper = Stepper::new(
-        Setup::new(
-            grid,
-            basis,
-            reconstruction,
-            LinearElastic { moduli },
-            PHASE,
-            particles,
-        )
-        .with_velocity_mass(MassModel::preferring(mass)),
-    )
-    .unwrap();
+    let setup = Setup::new(grid, basis, reconstruction, law, PHASE, particles)
+        .with_velocity_mass(MassModel::preferring(mass));
+    let mut stepper = Stepper::new(setup).unwrap();
     let walls = Face::all::<D>().fold(Forcing::none(), |f, face| {
         f.with_face(face, FaceCondition::roller(face.axis))
     });
@@ -107,4 +114,16 @@ fn a_strip_does_what_the_column_does() {
             run::<2, _, _>(Linear, Taylor::<f64, 2, 6>::new(), mass),
         );
     }
+}
+
+/// A law that remembers its deformation gradient, under some per cent of strain.
+#[test]
+fn a_strip_of_a_law_that_remembers_does_too() {
+    fn neo_hookean<const D: usize>(basis: impl BasisFamily<f64, D>) -> (Vec<[f64; 4]>, f64) {
+        let moduli = Moduli::from_young(1e7, 0.0).unwrap();
+        run_with(NeoHookean { moduli }, basis, Shepard, VelocityMass::Lumped, 10.0)
+    }
+    compare(neo_hookean::<1>(Linear), neo_hookean::<2>(Linear));
+    compare(neo_hookean::<1>(BSpline::<2>), neo_hookean::<2>(BSpline::<2>));
+    compare(neo_hookean::<1>(Linear), neo_hookean::<3>(Linear));
 }

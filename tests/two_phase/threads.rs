@@ -2,7 +2,7 @@
 //! particles come.
 
 use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
-use materialpoint::grid::{Face, Grid};
+use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
 use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::particles::{Particles, lattice};
@@ -66,13 +66,21 @@ where
 
 /// Positions, velocities, stresses, and velocities and pressures of the liquid after some steps on so many
 /// threads.
-fn run(body: impl FnOnce() -> Box<dyn Simulation<2>> + Send, threads: usize) -> Vec<f64> {
+fn run(
+    body: impl FnOnce() -> Box<dyn Simulation<2>> + Send,
+    floor: FaceCondition<f64, 2>,
+    threads: usize,
+) -> Vec<f64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap().install(|| {
         let walls = Face::all::<2>().fold(Forcing::none(), |forcing, face| {
             forcing.with_face(face, FaceCondition::roller(face.axis))
         });
-        let forcing = walls.with_body_force(vector![0.0, -10.0]);
+        let below = Face {
+            axis: 1,
+            side: Side::Min,
+        };
+        let forcing = walls.with_face(below, floor).with_body_force(vector![0.0, -10.0]);
         let mut body = body();
         for _ in 0..STEPS {
             body.step(2e-4, &forcing).unwrap();
@@ -96,14 +104,22 @@ where
     B: BasisFamily<f64, 2> + Send + 'static,
     R: Reconstruction<f64, 2> + Clone + Send + 'static,
 {
-    let one = run(|| body(&basis, &reconstruction, mass, false), 1);
+    check_on(basis, reconstruction, mass, FaceCondition::roller(1));
+}
+
+fn check_on<B, R>(basis: B, reconstruction: R, mass: VelocityMass, floor: FaceCondition<f64, 2>)
+where
+    B: BasisFamily<f64, 2> + Send + 'static,
+    R: Reconstruction<f64, 2> + Clone + Send + 'static,
+{
+    let one = run(|| body(&basis, &reconstruction, mass, false), floor, 1);
     for threads in [2, 3] {
-        let more = run(|| body(&basis, &reconstruction, mass, false), threads);
+        let more = run(|| body(&basis, &reconstruction, mass, false), floor, threads);
         let same = one.iter().zip(&more).all(|(a, b)| a.to_bits() == b.to_bits());
         assert!(same, "{mass:?}, {threads} threads");
     }
     // Numbers of a kind lie together, and each particle's come back in the order in which it was given.
-    let shuffled = run(|| body(&basis, &reconstruction, mass, true), 2);
+    let shuffled = run(|| body(&basis, &reconstruction, mass, true), floor, 2);
     let count = one.len() / 8;
     for p in 0..count {
         let q = p * 10_007 % count;
@@ -135,4 +151,6 @@ fn any_number_of_threads_gives_the_bits_of_one_and_the_order_of_particles_does_n
         Taylor::<f64, 2, 6>::new(),
         VelocityMass::Constrained,
     );
+    let rubs = FaceCondition::frictional(0.3);
+    check_on(Linear, Shepard, VelocityMass::Lumped, rubs);
 }

@@ -55,7 +55,7 @@ where
     X: Transfer<T, D>,
 {
     /// Solves for the impulses and passes them on.
-    pub(super) fn push_by_mapping(&mut self, forcing: &Forcing<T, D>, scale: T) -> WallAction<T, D> {
+    pub(super) fn push_by_mapping(&mut self, dt: T, forcing: &Forcing<T, D>, scale: T) -> WallAction<T, D> {
         let rest = at_rest(forcing);
         let mut action = WallAction {
             solved: false,
@@ -63,7 +63,14 @@ where
         };
         let least = (scale * T::lit(TOLERANCE)).max(self.contact.round_off());
         self.contact.reached.copy_from_slice(&self.dofs.velocity);
-        self.probe_columns(&rest);
+        if const { P::FLOWS } {
+            self.contact.liquid.begin(&self.liquid.velocity);
+        }
+        if const { P::FLOWS && Self::WALLS_BY_SUMS } {
+            self.contact.estimate_columns();
+        } else {
+            self.probe_columns(dt, &rest);
+        }
         self.contact.impulse.fill(SVector::zeros());
         self.contact.read_reached();
         self.contact.begin_corrections();
@@ -77,11 +84,12 @@ where
                 delassus: &contact.delassus,
                 velocity: &mut contact.velocity,
                 closed: &contact.closed,
-                // Symmetric only where the particles' own matrix is what accelerations are solved with.
-                subspace: R::Mass::IN_ACCELERATION.then_some(&mut contact.subspace),
+                subspace: const { Self::SYMMETRIC }.then_some(&mut contact.subspace),
             };
             let solved = problem.solve(least);
             if !solved.changed {
+                // What the last sweep changed is too little to be passed on.
+                contact.dofs.contacts.clone_from(&contact.tried);
                 action.solved = true;
                 break;
             }
@@ -94,10 +102,10 @@ where
             }
             last = size;
             contact.lay_new_impulses();
-            self.respond(&rest);
+            self.respond(dt, &rest);
             let after = self.contact.energy_with(&self.dofs.velocity);
             // Only where the particles' matrix makes the operator symmetric is this their energy.
-            if R::Mass::IN_ACCELERATION && after - energy > energy.abs() * T::lit(RISE) {
+            if R::Mass::IN_ACCELERATION && !P::FLOWS && after - energy > energy.abs() * T::lit(RISE) {
                 failures += 1;
                 self.contact.take_back(failures);
                 continue;
@@ -106,17 +114,28 @@ where
             self.take_response(&mut action);
         }
         self.dofs.velocity.copy_from_slice(&self.contact.reached);
+        if const { P::FLOWS } {
+            self.contact
+                .end_with_liquid(&mut self.liquid.velocity, &mut action);
+        }
         action
     }
 
+    /// Whether the operator at hand is symmetric: in one phase the particles' own matrix is what
+    /// accelerations are solved with too, and the estimate for two is made so.
+    const SYMMETRIC: bool = match P::FLOWS {
+        true => Self::WALLS_BY_SUMS,
+        false => R::Mass::IN_ACCELERATION,
+    };
+
     /// Fills the columns of the Delassus operator.
-    fn probe_columns(&mut self, rest: &Forcing<T, D>) {
+    fn probe_columns(&mut self, dt: T, rest: &Forcing<T, D>) {
         let shape = self.basis.dofs(&self.grid);
         let stride = 2 * reach::<D>() + 1;
         for colour in 0..stride.pow(D as u32) {
             let colour = coordinates(colour, &[stride; D]);
             if self.contact.lay_unit_impulses(&colour, &shape, stride) {
-                self.respond(rest);
+                self.respond(dt, rest);
                 let responses = &self.dofs.velocity;
                 self.contact.note_columns(&colour, &shape, stride, responses);
             }
@@ -127,7 +146,10 @@ where
 
     /// Changes of velocity of particles and DOFs by the impulses laid at the DOFs; the latter's take the
     /// place of the velocities.
-    fn respond(&mut self, rest: &Forcing<T, D>) {
+    fn respond(&mut self, dt: T, rest: &Forcing<T, D>) {
+        if const { P::FLOWS } {
+            return self.respond_with_both(dt, rest);
+        }
         let walls = Walls::of_solid(&self.face_dofs, rest);
         let force = &mut self.dofs.force;
         force.copy_from_slice(&self.contact.gain);
@@ -160,6 +182,9 @@ where
         for ((velocity, &mass), by) in particles.zip(kicks.iter()) {
             action.impulse += by * mass;
             *velocity += by;
+        }
+        if const { P::FLOWS } {
+            self.take_response_of_liquid();
         }
     }
 }

@@ -22,9 +22,12 @@
 //! solution is corrected with the mapping itself until the law holds ([`mapping`]). With published TLS, whose
 //! forces are not adjoint to its mapping, the proof above does not hold, although the law is obeyed as
 //! exactly.
+//!
+//! Where a liquid flows through the pores a wall acts on the whole of both phases ([`saturated`]).
 
 mod delassus;
 mod mapping;
+mod saturated;
 mod shape;
 mod solve;
 mod subspace;
@@ -46,6 +49,8 @@ use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::transfer::Transfer;
 use delassus::Delassus;
+use saturated::LiquidAtWalls;
+pub use saturated::WallImpulse;
 pub(super) use shape::shapes;
 use subspace::Subspace;
 use wall::{Contact, Wall, WallDofs};
@@ -81,6 +86,8 @@ pub(super) struct WallContact<T, const D: usize> {
     /// Of the DOFs on walls: velocities without any impulse; and the contacts before a correction.
     free: Vec<SVector<T, D>>,
     tried: Vec<Contact<T, D>>,
+    /// What there is of the liquid where one flows.
+    liquid: LiquidAtWalls<T, D>,
 }
 
 /// What the walls did to the particles in a step.
@@ -124,6 +131,7 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
             kicks: Vec::new(),
             free: Vec::new(),
             tried: Vec::new(),
+            liquid: LiquidAtWalls::none(),
         }
     }
 
@@ -149,6 +157,7 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
             + self.dofs.bytes()
             + self.delassus.bytes()
             + self.subspace.bytes()
+            + self.liquid.bytes()
     }
 
     /// Greatest velocity (m/s) of a closed contact relative to its wall.
@@ -209,47 +218,36 @@ where
 {
     /// Lets the walls act on particles and DOFs, whose velocities are those that the step would have without
     /// them.
-    pub(super) fn apply_wall_contact(&mut self, forcing: &Forcing<T, D>) {
-        if const { !X::FROM_GRID } && Wall::<T, D>::are_there(forcing) {
-            self.apply_contact_with(forcing);
+    pub(super) fn apply_wall_contact(&mut self, dt: T, forcing: &Forcing<T, D>) {
+        if const { !X::FROM_GRID } && rub(forcing) {
+            self.apply_contact_with(dt, forcing);
         }
     }
 
     // Out of line: there is a step for every method, and few runs have walls that rub.
     #[inline(never)]
-    fn apply_contact_with(&mut self, forcing: &Forcing<T, D>) {
-        let by_sums = const { R::Mass::OF_PARTICLES && !R::Mass::IN_ACCELERATION };
-        if !self.contact.dofs.fit(forcing, self.dofs.mass.len()) {
-            let reach = self.basis.reach();
-            let room = Room {
-                shape: self.basis.dofs(&self.grid),
-                reach: if by_sums { reach } else { mapping::reach::<D>() },
-                seen: (reach + 1).pow(D as u32),
-                by_sums,
-            };
-            let initial = &self.particles.initial_position;
+    fn apply_contact_with(&mut self, dt: T, forcing: &Forcing<T, D>) {
+        if const { P::FLOWS } {
+            self.answer_of_both(dt, forcing);
+        } else {
+            self.detect_contacts(forcing);
             self.contact
-                .allocate(room, &self.face_dofs, forcing, (&self.grid, initial, &self.order));
+                .invert_masses(&self.dofs.mass, &self.face_dofs, forcing);
         }
-        self.contact.dofs.begin(forcing);
-        let space = (&self.basis, &self.grid, self.bins.cells());
-        detect_contacts(space, &self.particles, &self.order, forcing, &mut self.contact);
-        self.contact
-            .invert_masses(&self.dofs.mass, &self.face_dofs, forcing);
         self.contact.read(&self.dofs.velocity);
         let scale = self.contact.scale();
         if scale <= T::zero() {
             return;
         }
-        let mut action = match by_sums {
+        let mut action = match const { Self::WALLS_BY_SUMS && !P::FLOWS } {
             true => sums::push_by_sums(
-                space,
+                (&self.basis, &self.grid, self.bins.cells()),
                 &mut self.particles,
                 scale,
                 &mut self.contact,
                 &mut self.dofs,
             ),
-            false => self.push_by_mapping(forcing, scale),
+            false => self.push_by_mapping(dt, forcing, scale),
         };
         let velocities = &mut self.dofs.velocity;
         Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, velocity, _| {
@@ -261,6 +259,35 @@ where
         }
         self.diagnostics.record_walls(&action);
     }
+
+    /// Whether momenta are particle sums over lumped masses.
+    const WALLS_BY_SUMS: bool = R::Mass::OF_PARTICLES && !R::Mass::IN_ACCELERATION;
+
+    /// Finds the contacts that are closed.
+    fn detect_contacts(&mut self, forcing: &Forcing<T, D>) {
+        let by_sums = const { Self::WALLS_BY_SUMS };
+        if !self.contact.dofs.fit(forcing, self.dofs.mass.len()) {
+            let reach = self.basis.reach();
+            let room = Room {
+                shape: self.basis.dofs(&self.grid),
+                reach: if by_sums { reach } else { mapping::reach::<D>() },
+                seen: (reach + 1).pow(D as u32),
+                maps: !by_sums || P::FLOWS,
+                flows: P::FLOWS,
+            };
+            let initial = &self.particles.initial_position;
+            self.contact
+                .allocate(room, &self.face_dofs, forcing, (&self.grid, initial, &self.order));
+        }
+        self.contact.dofs.begin(forcing);
+        let space = (&self.basis, &self.grid, self.bins.cells());
+        detect_contacts(space, &self.particles, &self.order, forcing, &mut self.contact);
+    }
+}
+
+/// Whether a step has walls that rub.
+pub(super) fn rub<T: Scalar, const D: usize>(forcing: &Forcing<T, D>) -> bool {
+    Wall::are_there(forcing)
 }
 
 /// How much contact needs room for.
@@ -271,8 +298,10 @@ struct Room<const D: usize> {
     reach: usize,
     /// Most DOFs that a particle sees.
     seen: usize,
-    /// Whether the mapping is by particle sums.
-    by_sums: bool,
+    /// Whether the mapping itself is asked for what impulses do.
+    maps: bool,
+    /// Whether a liquid flows.
+    flows: bool,
 }
 
 impl<T: Scalar, const D: usize> WallContact<T, D> {
@@ -301,11 +330,14 @@ impl<T: Scalar, const D: usize> WallContact<T, D> {
         }
         self.near = Vec::with_capacity(initial.len());
         self.closed = Vec::with_capacity(self.dofs.contacts.len());
-        if !room.by_sums {
+        if room.maps {
             self.reached = vec![SVector::zeros(); dofs];
             self.kicks = vec![SVector::zeros(); initial.len()];
             self.free = vec![SVector::zeros(); places];
             self.tried.clone_from(&self.dofs.contacts);
+        }
+        if room.flows {
+            self.liquid.lay(dofs, initial.len(), self.dofs.contacts.len());
         }
     }
 
@@ -372,8 +404,9 @@ fn detect_contacts<T: Scalar, const D: usize, B: BasisFamily<T, D>, N, Q>(
         }
     }
     closed.clear();
-    for (k, contact) in dofs.contacts.iter().enumerate() {
-        if contact.gap <= grid.cell_size()[contact.wall.face.axis] * T::lit(CLOSED) {
+    for (k, contact) in dofs.contacts.iter_mut().enumerate() {
+        contact.closed = contact.gap <= grid.cell_size()[contact.wall.face.axis] * T::lit(CLOSED);
+        if contact.closed {
             closed.push(k as u32);
         }
     }

@@ -87,8 +87,14 @@ pub(super) struct Contact<T, const D: usize> {
     pub(super) wall: Wall<T, D>,
     /// Least distance (m) of the surface of a particle that the DOF sees from the wall.
     pub(super) gap: T,
+    /// Whether they touch.
+    pub(super) closed: bool,
     /// Impulse of the wall along its inward normal (N s), never negative.
     pub(super) normal: T,
+    /// Share of it that the liquid in the pores bears by its pressure, and what the liquid bears besides
+    /// (N s): nothing where none flows, or where it passes the wall.
+    pub(super) relief: T,
+    pub(super) pressed: T,
     /// Impulse of the wall along itself (N s).
     pub(super) tangential: SVector<T, D>,
 }
@@ -96,7 +102,12 @@ pub(super) struct Contact<T, const D: usize> {
 impl<T: Scalar, const D: usize> Contact<T, D> {
     /// Greatest impulse along the wall (N s).
     pub(super) fn bound(&self) -> T {
-        self.wall.coefficient * self.normal
+        self.wall.coefficient * self.effective()
+    }
+
+    /// Normal impulse (N s) less what the liquid's pressure bears: that of the grains, which do not pull.
+    pub(super) fn effective(&self) -> T {
+        (self.normal - (self.relief * self.normal + self.pressed)).max(T::zero())
     }
 
     /// The whole impulse (N s).
@@ -163,7 +174,10 @@ impl<T: Scalar, const D: usize> WallDofs<T, D> {
                     place: dof as usize,
                     wall,
                     gap: T::zero(),
+                    closed: false,
                     normal: T::zero(),
+                    relief: T::zero(),
+                    pressed: T::zero(),
                     tangential: SVector::zeros(),
                 }));
         }
@@ -195,6 +209,16 @@ impl<T: Scalar, const D: usize> WallDofs<T, D> {
     #[inline(always)]
     pub(super) fn contacts_at(&mut self, place: usize) -> &mut [Contact<T, D>] {
         &mut self.contacts[self.contact_starts[place]..self.contact_starts[place + 1]]
+    }
+
+    /// Whether the DOF is closed at a face.
+    pub(super) fn is_closed(&self, dof: usize, face: Face) -> bool {
+        let Some(place) = self.place(dof) else {
+            return false;
+        };
+        let contacts = &self.contacts[self.contact_starts[place]..self.contact_starts[place + 1]];
+        let mut there = contacts.iter().filter(|contact| contact.wall.face == face);
+        there.any(|contact| contact.closed)
     }
 
     /// Velocity (m/s) of the wall on which the DOF at `place` lies.
@@ -233,7 +257,10 @@ impl<T: Scalar, const D: usize> WallDofs<T, D> {
                 contact.wall = wall;
             }
             contact.gap = T::lit(f64::INFINITY);
+            contact.closed = false;
             contact.normal = T::zero();
+            contact.relief = T::zero();
+            contact.pressed = T::zero();
             contact.tangential = SVector::zeros();
         }
     }

@@ -49,6 +49,17 @@ pub(super) struct Place<const D: usize> {
 }
 
 impl<const D: usize> Place<D> {
+    /// The DOF on the grid's face in the row of `dof` along the face's axis.
+    pub(super) fn below(&self, dof: usize) -> usize {
+        let axis = self.face.axis;
+        let stride: usize = self.shape[..axis].iter().product();
+        let index = dof / stride % self.shape[axis];
+        match self.face.side {
+            Side::Min => dof - index * stride,
+            Side::Max => dof + (self.shape[axis] - 1 - index) * stride,
+        }
+    }
+
     /// Number of the multiplier whose trace has the function of `dof`.
     fn trace_of(&self, dof: usize) -> usize {
         let axis = self.face.axis;
@@ -124,8 +135,8 @@ impl<T: Scalar> Components<T> {
     }
 }
 
-/// Calls what it is given for DOFs with values.
-type Visit<'a, T> = dyn FnMut(&mut dyn FnMut(usize, T)) + 'a;
+/// Calls what it is given for DOFs with values, and whether their traces ask anything.
+type Visit<'a, T> = dyn FnMut(&mut dyn FnMut(usize, T, bool)) + 'a;
 
 /// The points of the sealed surfaces.
 #[derive(Clone, Debug)]
@@ -198,6 +209,11 @@ fn number<T>(weights: &mut [Weight<T>], numbers: &mut Vec<usize>) {
     for weight in weights {
         weight.index = numbers.partition_point(|&number| number < weight.index);
     }
+}
+
+/// Makes room for so many more than there is room for.
+fn enlarge<A>(list: &mut Vec<A>, by: usize) {
+    list.reserve_exact(list.capacity() - list.len() + by);
 }
 
 /// Vectors of the conjugate gradients, an entry each multiplier.
@@ -312,6 +328,59 @@ impl<T: Scalar> Seal<T> {
             + 5 * size_of::<T>() * multipliers.capacity()
     }
 
+    /// Makes room for so many points more, each of one function and one trace.
+    pub(in super::super) fn enlarge(&mut self, points: usize) {
+        let Points {
+            ends,
+            functions,
+            traces,
+        } = &mut self.points;
+        enlarge(ends, points);
+        enlarge(functions, points);
+        enlarge(traces, points);
+        let Components {
+            numbers,
+            held,
+            answers,
+            slip,
+            force,
+        } = &mut self.components;
+        enlarge(numbers, points);
+        enlarge(held, points);
+        enlarge(answers, points);
+        enlarge(slip, points);
+        enlarge(force, points);
+        enlarge(&mut self.gradients.numbers, points);
+        for vector in self.gradients.vectors() {
+            enlarge(vector, points);
+        }
+    }
+
+    /// Adds that the slip at a DOF on the grid's face vanishes, where a wall that rubs touches what it sees.
+    pub(in super::super) fn add_contact<const D: usize>(
+        &mut self,
+        face: Face,
+        dof: usize,
+        shape: [usize; D],
+        area: T,
+    ) {
+        // No surface lies beyond the last layer of cells: multipliers of their own.
+        let layer = shape[face.axis];
+        self.add_point(&Place { face, layer, shape }, area, &mut |add| {
+            add(dof, T::one(), true);
+        });
+    }
+
+    /// Force on the liquid along an axis of a DOF that was solved for last, with its opposite on the solid;
+    /// nothing where nothing is sealed.
+    pub(in super::super) fn force<const D: usize>(&self, dof: usize, axis: usize) -> Option<T> {
+        if self.is_empty() {
+            return None;
+        }
+        let found = self.components.find::<D>(dof, axis)?;
+        self.components.force.get(found).copied()
+    }
+
     /// Whether nothing is sealed.
     pub(super) fn is_empty(&self) -> bool {
         self.points.ends.is_empty()
@@ -325,7 +394,8 @@ impl<T: Scalar> Seal<T> {
     }
 
     /// Adds a point at `place` that stands for `area` of the surface; `visit` calls what it is given for each
-    /// DOF with its value there.
+    /// DOF with its value there, and whether its trace is one that the slip is to vanish against. A point
+    /// without any asks for nothing.
     pub(super) fn add_point<const D: usize>(&mut self, place: &Place<D>, area: T, visit: &mut Visit<'_, T>) {
         let Points {
             ends,
@@ -336,12 +406,18 @@ impl<T: Scalar> Seal<T> {
             functions: 0,
             traces: 0,
         });
-        visit(&mut |dof, value| {
+        visit(&mut |dof, value, asks| {
             if value != T::zero() {
                 add(functions, first.functions, dof * D + place.face.axis, value);
-                add(traces, first.traces, place.trace_of(dof), value * area);
+                if asks {
+                    add(traces, first.traces, place.trace_of(dof), value * area);
+                }
             }
         });
+        if traces.len() == first.traces {
+            functions.truncate(first.functions);
+            return;
+        }
         ends.push(Ends {
             functions: functions.len(),
             traces: traces.len(),
@@ -449,8 +525,8 @@ mod tests {
             let (first, right) = (cell as usize, x - cell);
             seal.add_point::<2>(&place, 1.0 / points.len() as f64, &mut |add| {
                 for (k, along) in [1.0 - right, right].into_iter().enumerate() {
-                    add(first + k, along * (1.0 - y));
-                    add(first + k + cells + 1, along * y);
+                    add(first + k, along * (1.0 - y), true);
+                    add(first + k + cells + 1, along * y, true);
                 }
             });
         }

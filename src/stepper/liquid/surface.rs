@@ -3,12 +3,13 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::super::acceleration::Walls;
+use super::super::contact::rub;
 use super::super::forces::{add_load, each_seen};
 use super::super::{FaceCondition, Forcing, PoreCondition, Stepper, SurfacePoint};
 use super::seal::{Answer, Place, Seal};
 use crate::basis::BasisFamily;
 use crate::field::{Pair, Symmetric};
-use crate::grid::Side;
+use crate::grid::{Face, Side};
 use crate::law::LawSweep;
 use crate::phase::{Drag, Phase};
 use crate::reconstruction::Reconstruction;
@@ -53,6 +54,10 @@ fn is_held<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePo
     matches!(forcing.face(point.face), FaceCondition::Held { .. })
 }
 
+fn rubs<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, face: Face) -> bool {
+    matches!(forcing.face(face), FaceCondition::Frictional { .. })
+}
+
 /// Whether the liquid does not pass a surface. A wall at the face makes no difference: where the surface does
 /// not lie on it nothing else stops the liquid, and where it does the slip is zero already.
 fn is_sealed<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> bool {
@@ -63,10 +68,15 @@ fn is_sealed<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &Surface
 fn traction<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfacePoint<T>) -> SVector<T, D> {
     match forcing.face(point.face) {
         FaceCondition::Traction(traction) if point.loaded => *traction,
-        FaceCondition::Traction(_)
-        | FaceCondition::Free
-        | FaceCondition::Held { .. }
-        | FaceCondition::Frictional { .. } => SVector::zeros(),
+        // What passes a wall presses on the body with its own pressure; the grains' is the wall's impulse.
+        FaceCondition::Frictional { .. } => {
+            let mut traction = SVector::zeros();
+            if let (PoreCondition::Pressure(pressure), axis) = (forcing.pores(point.face), point.face.axis) {
+                traction[axis] = pressure * point.outward();
+            }
+            traction
+        }
+        FaceCondition::Traction(_) | FaceCondition::Free | FaceCondition::Held { .. } => SVector::zeros(),
     }
 }
 
@@ -90,7 +100,17 @@ where
         if const { D > 1 || !P::FLOWS } {
             return UniformLoad::none();
         }
+        if !self.are_rubbed_surfaces_known(forcing) {
+            return UniformLoad::none();
+        }
         uniform_load(&self.surface, forcing)
+    }
+
+    /// Whether every wall that rubs has a surface of the bodies before it, which then takes the even state's
+    /// part of what presses there.
+    fn are_rubbed_surfaces_known(&self, forcing: &Forcing<T, D>) -> bool {
+        let mut walls = Face::all::<D>().filter(|&face| rubs(forcing, face));
+        walls.all(|face| self.surface.iter().any(|point| point.face == face))
     }
 
     /// What loads the surfaces besides the even part: tractions on the whole, pressures on the liquid where
@@ -120,6 +140,7 @@ where
     /// Finds the points of the surfaces that the liquid does not pass.
     pub(in super::super) fn find_seals(&mut self, forcing: &Forcing<T, D>) {
         self.seal.clear();
+        self.find_contacts(forcing);
         let shape = self.basis.dofs(&self.grid);
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
@@ -137,15 +158,19 @@ where
                 continue;
             }
             let x = self.surface_position(point);
-            let space = (&self.basis, &self.grid);
+            let (space, contact) = ((&self.basis, &self.grid), &self.contact);
             let place = Place {
                 face: point.face,
                 layer,
                 shape,
             };
-            self.seal
-                .add_point(&place, point.area, &mut |add| each_seen(space, (cell, &x), add));
+            // So does a wall that rubs, where they touch.
+            let sealed_by_wall = |dof| layer == end && contact.touches(place.below(dof), place.face);
+            self.seal.add_point(&place, point.area, &mut |add| {
+                each_seen(space, (cell, &x), &mut |i, phi| add(i, phi, !sealed_by_wall(i)));
+            });
         }
+        self.seal_contacts(forcing);
         number_components(&mut self.seal, Walls::of_both(&self.face_dofs, forcing));
     }
 
@@ -183,9 +208,13 @@ fn uniform_load<T: Scalar, const D: usize>(
     forcing: &Forcing<T, D>,
 ) -> UniformLoad<T> {
     let mut even = UniformLoad::none();
-    let free = |point: &&SurfacePoint<T>| !is_held(forcing, point);
+    let free = |point: &&SurfacePoint<T>| !is_held(forcing, point) && !rubs(forcing, point.face);
     if let Some(point) = surface.iter().find(free) {
         even.stress = traction(forcing, point)[0] * point.outward();
+    }
+    if rub(forcing) {
+        // What the liquid bears of what presses on a wall is its whole pressure.
+        return even;
     }
     let pressures = surface.iter().map(|point| forcing.pores(point.face));
     for condition in pressures {

@@ -93,21 +93,18 @@ where
             None => self.of_phase(basis, reconstruction, OnePhase, nothing),
             // Known at compile time: no stepper is built for what scenes refuse.
             Some(_) if const { one_phase_only::<T, D, R>() } => Err(SetupError::OnePhaseOnly.into()),
-            // Two phases in the plane are verified with laws that remember nothing.
-            Some(_) if D > 1 && self.law.remembers() => Err(SetupError::OnePhaseOnly.into()),
             Some(phase) => self.of_phase(basis, reconstruction, phase, cast_liquid),
         }
     }
 }
 
-/// Whether there is no scene of two phases: relaxed TLS knows one phase only beyond one axis, and in space,
-/// where each stepper takes seconds to compile, two phases are left to callers that name the types.
+/// Whether there is no scene of two phases: relaxed TLS knows one phase only beyond one axis.
 const fn one_phase_only<T, const D: usize, R>() -> bool
 where
     T: Scalar,
     R: Reconstruction<T, D>,
 {
-    D > 2 || D == 2 && R::Mass::IN_ACCELERATION
+    D > 1 && R::Mass::IN_ACCELERATION
 }
 
 impl<T, const D: usize> Parts<T, D> {

@@ -1,7 +1,7 @@
 //! What scenes of two and three dimensions do not have in this version.
 
 use super::Section;
-use crate::scene::{Basis, Initialise, Law, Phases, ScalarKind, Scene, SceneError};
+use crate::scene::{Basis, Initialise, Law, Phases, ScalarKind, Scene, SceneError, SpaceLaw};
 
 pub(super) fn check(root: &Section<'_>, scene: &Scene) -> Result<(), SceneError> {
     if scene.dimension() == 1 {
@@ -30,19 +30,14 @@ pub(super) fn check(root: &Section<'_>, scene: &Scene) -> Result<(), SceneError>
     Ok(())
 }
 
-/// In the plane, with a law that remembers nothing but the stress.
+/// Pores need a solid.
 fn two_phases(root: &Section<'_>, scene: &Scene) -> Result<(), SceneError> {
-    if scene.dimension() > 2 {
-        return Err(refuse(root, "material", "phases", "1 in three dimensions")?);
-    }
     match scene.material.law {
-        Law::LinearElastic { .. } | Law::Hill { .. } => Ok(()),
-        _ => Err(refuse(
-            root,
-            "material",
-            "law",
-            "linear-elastic with two phases in the plane",
-        )?),
+        Law::InSpace(SpaceLaw::NewtonianFluid { .. }) => {
+            let item = root.section("material")?.required("law", "the law of a solid")?;
+            Err(item.conflict("a fluid has no pores; expected the law of a solid with phases = 2"))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -97,9 +97,6 @@ fn kind(
     match *kind {
         "fixed" => holds(&item, BoundaryKind::Fixed),
         "roller" => holds(&item, BoundaryKind::Roller),
-        "friction" if phases == PhaseCount::Two => {
-            Err(item.conflict("it knows one phase only so far; expected fixed, velocity or traction"))
-        }
         "friction" => {
             let expected = "a coefficient of friction, 0 or more";
             let coefficient = item.number_where(expected, |coefficient| coefficient >= 0.0)?;
