@@ -20,7 +20,7 @@ mod values;
 pub(crate) use filter::sealed::Filters;
 pub(crate) use filter::{CourantNumbers, Filling};
 pub use filter::{Filter, NoFilter, NullSpace};
-pub(crate) use four_cells::{BatchStatus, FourCells, InFours, Kept, batch_of_cells};
+pub(crate) use four_cells::{BatchStatus, InFours, Kept, batch_of_cells};
 pub use patch::{Cut, Patch};
 pub(crate) use points::sealed::Streams;
 pub use points::{Anywhere, AtParticles, CellStream, InCells, PointSet};

@@ -158,10 +158,11 @@ pub(crate) mod sealed {
         /// [`Reconstruction::prepare`]: crate::reconstruction::Reconstruction::prepare
         const IN_FOURS: bool = false;
 
-        /// Numbers of each of four cells that are kept from the first fit of a step to the second.
+        /// Numbers of each of four cells that [`Streams::fit_batch`] keeps where it does not conserve, and
+        /// takes up again where it does.
         const KEPT: usize = 0;
 
-        /// Whether a cell's fit wants the values of its neighbours ([`Streams::take_in_field`]).
+        /// Whether a cell's fit wants what `prepare` and [`Streams::take_in_field`] took in.
         const NON_LOCAL: bool = false;
 
         /// Streams what `integrate` does in some cells.
@@ -186,8 +187,8 @@ pub(crate) mod sealed {
             const { assert!(!Self::IN_CELLS) };
         }
 
-        /// [`FourCells::take_in_field`](crate::reconstruction::FourCells::take_in_field); nothing where cells
-        /// are fitted for themselves.
+        /// Takes in the field that will be streamed next, where a cell's fit wants the values of its
+        /// neighbours.
         fn take_in_field<Q: Field<T>>(
             _reconstruction: &mut R,
             _cloud: &Cloud<'_, T, D>,
@@ -196,19 +197,24 @@ pub(crate) mod sealed {
             const { assert!(!Self::NON_LOCAL) };
         }
 
-        /// [`FourCells::line`](crate::reconstruction::FourCells::line).
+        /// Coordinates in a cell, each in `[-1, 1]`, of the points along an axis whose products
+        /// [`Streams::integrate_batch`] streams, axis 0 fastest; none if it cannot as it is set up.
         fn line(_reconstruction: &R) -> impl Iterator<Item = T> {
             const { assert!(!Self::IN_FOURS) };
             std::iter::empty()
         }
 
-        /// [`FourCells::weighted_line`](crate::reconstruction::FourCells::weighted_line).
+        /// The same points with their weights, as shares of the line.
         fn weighted_line(_reconstruction: &R) -> impl Iterator<Item = (T, T)> {
             const { assert!(!Self::IN_FOURS) };
             std::iter::empty()
         }
 
-        /// [`FourCells::integrate_batch`](crate::reconstruction::FourCells::integrate_batch).
+        /// What `integrate_conserved` streams, if `conserve`, or else `integrate`, in up to four `cells`,
+        /// places in the list of occupied ones from a multiple of four on: one cell in each lane, the number
+        /// of the point and the components of the value. `value` is that of a particle: in the first case its
+        /// density. Returns in which cells it failed (those that a surface cuts always), so that they must be
+        /// streamed by [`Streams::integrate_single`].
         fn integrate_batch<K: Packs<T>, Q: Field<T>>(
             _reconstruction: &R,
             _k: K,
@@ -222,7 +228,8 @@ pub(crate) mod sealed {
             BatchStatus::default()
         }
 
-        /// [`FourCells::fit_batch`](crate::reconstruction::FourCells::fit_batch).
+        /// What [`Streams::integrate_batch`] streams, before it is evaluated at points: the number of a
+        /// function of [`mod@crate::taylor`] and the components of its coefficient, each function once.
         fn fit_batch<K: Packs<T>, Q: Field<T>>(
             _reconstruction: &R,
             _k: K,
@@ -236,7 +243,8 @@ pub(crate) mod sealed {
             BatchStatus::default()
         }
 
-        /// [`FourCells::integrate_single`](crate::reconstruction::FourCells::integrate_single).
+        /// [`Streams::integrate_batch`] in one cell that is given by its number, point by point; returns
+        /// whether it was fitted with the full set of functions.
         fn integrate_single<Q: Field<T>>(
             _reconstruction: &R,
             _cloud: &Cloud<'_, T, D>,

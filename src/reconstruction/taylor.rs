@@ -16,7 +16,7 @@ use virtual_points::Lent;
 
 use super::gauss::GaussRule;
 use super::{
-    BatchStatus, CellStream, Cloud, FourCells, InFours, Kept, NoFilter, Patch, Point, Reconstruction, Values,
+    BatchStatus, CellStream, Cloud, InFours, Kept, NoFilter, Patch, Point, Reconstruction, Streams, Values,
 };
 use crate::basis::BasisFamily;
 use crate::field::Field;
@@ -343,7 +343,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         fit_about_mean(cell.fits, cloud, cell.number, value, mean)
     }
 
-    /// [`FourCells::integrate_batch`] of a field of not more than `C` components.
+    /// [`Streams::integrate_batch`] of a field of not more than `C` components.
     #[inline(always)]
     fn integrate_few<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
@@ -362,7 +362,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Taylor<T, D, NB> {
         four
     }
 
-    /// [`FourCells::fit_batch`] likewise.
+    /// [`Streams::fit_batch`] likewise.
     #[inline(always)]
     fn fit_few<K: Packs<T>, Q: Field<T>, const C: usize>(
         &self,
@@ -749,22 +749,46 @@ impl<T: Scalar, const D: usize, const NB: usize> CellStream<T, D> for Taylor<T, 
     }
 }
 
-impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for Taylor<T, D, NB> {
+impl<T: Scalar, const D: usize, const NB: usize> Streams<T, D, Taylor<T, D, NB>> for InFours {
+    const IN_CELLS: bool = true;
+    const IN_FOURS: bool = true;
     const KEPT: usize = kept::<NB>();
 
-    fn line(&self) -> impl Iterator<Item = T> {
+    #[inline(always)]
+    fn cells<Q: Field<T>>(
+        taylor: &Taylor<T, D, NB>,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        value: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        taylor.integrate_cells(cloud, cells, value, sink);
+    }
+
+    #[inline(always)]
+    fn conserved_cells<Q: Field<T>>(
+        taylor: &Taylor<T, D, NB>,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        amount: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        taylor.integrate_conserved_cells(cloud, cells, amount, sink);
+    }
+
+    fn line(taylor: &Taylor<T, D, NB>) -> impl Iterator<Item = T> {
         // Virtual points want the fits of neighbours.
-        let points = if D == 1 && self.virtual_points {
+        let points = if D == 1 && taylor.virtual_points {
             0
         } else {
             usize::MAX
         };
-        self.rule.line().take(points)
+        taylor.rule.line().take(points)
     }
 
     #[inline(always)]
     fn integrate_batch<K: Packs<T>, Q: Field<T>>(
-        &self,
+        taylor: &Taylor<T, D, NB>,
         k: K,
         (cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
         conserve: bool,
@@ -772,7 +796,7 @@ impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for Taylor<T, D
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> BatchStatus {
-        with_room!(Q::COMPONENTS, |C| self.integrate_few::<K, Q, C>(
+        with_room!(Q::COMPONENTS, |C| taylor.integrate_few::<K, Q, C>(
             k,
             (cloud, cells),
             conserve,
@@ -782,13 +806,13 @@ impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for Taylor<T, D
         ))
     }
 
-    fn weighted_line(&self) -> impl Iterator<Item = (T, T)> {
-        self.rule.weighted_line()
+    fn weighted_line(taylor: &Taylor<T, D, NB>) -> impl Iterator<Item = (T, T)> {
+        taylor.rule.weighted_line()
     }
 
     #[inline(always)]
     fn fit_batch<K: Packs<T>, Q: Field<T>>(
-        &self,
+        taylor: &Taylor<T, D, NB>,
         k: K,
         place: (&Cloud<'_, T, D>, Range<usize>),
         conserve: bool,
@@ -796,29 +820,33 @@ impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for Taylor<T, D
         value: &impl Values<T, Q>,
         sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> BatchStatus {
-        with_room!(Q::COMPONENTS, |C| self
+        with_room!(Q::COMPONENTS, |C| taylor
             .fit_few::<K, Q, C>(k, place, conserve, kept, value, sink))
     }
 
     #[cold]
     #[inline(never)]
     fn integrate_single<Q: Field<T>>(
-        &self,
+        taylor: &Taylor<T, D, NB>,
         cloud: &Cloud<'_, T, D>,
         cell: usize,
         conserve: bool,
         value: &dyn Fn(usize) -> Q,
         sink: &mut dyn FnMut(&Point<T, D>, Q),
     ) -> bool {
-        let fits = CellFits::new(cloud, cell, self.tolerance);
+        let fits = CellFits::new(cloud, cell, taylor.tolerance);
         let (coefficients, full) = if conserve {
             let amount = |p| value(p).scaled(cloud.volumes[p]);
             let coefficients = conserved(&fits, cloud, cell, &amount);
-            (self.rule.keep_positive(coefficients).0, fits.conserved_is_full())
+            (
+                taylor.rule.keep_positive(coefficients).0,
+                fits.conserved_is_full(),
+            )
         } else {
             (free(&fits, cloud, cell, &value), fits.free_is_full())
         };
-        self.rule
+        taylor
+            .rule
             .emit(&fits.patch, &coefficients, &mut |point, value| sink(point, value));
         full
     }

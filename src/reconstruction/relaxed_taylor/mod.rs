@@ -17,8 +17,8 @@ use std::ops::Range;
 use super::gauss::GaussRule;
 use super::taylor::hand_over;
 use super::{
-    BatchStatus, CellStream, Cloud, CourantNumbers, Filling, Filter, Filters, FourCells, InFours, Kept,
-    NullSpace, Point, Reconstruction, Stored, Values,
+    BatchStatus, CellStream, Cloud, CourantNumbers, Filling, Filter, Filters, InFours, Kept, NullSpace,
+    Point, Reconstruction, Stored, Streams, Values,
 };
 use crate::basis::BasisFamily;
 use crate::field::Field;
@@ -194,7 +194,7 @@ impl<T: Scalar, const D: usize, const NB: usize> Reconstruction<T, D> for Relaxe
     ) {
         // Not what a step calls: that streams cells, and allocates nothing.
         let values: Vec<Q> = (0..cloud.positions.len()).map(value).collect();
-        self.take_in_field(cloud, &Stored(&values));
+        self.sum_field(cloud, &Stored(&values));
         self.integrate_cells(cloud, 0..self.cells.len(), |p| values[p], sink);
     }
 
@@ -260,20 +260,48 @@ impl<T: Scalar, const D: usize, const NB: usize> CellStream<T, D> for RelaxedTay
     }
 }
 
-impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for RelaxedTaylor<T, D, NB> {
+impl<T: Scalar, const D: usize, const NB: usize> Streams<T, D, RelaxedTaylor<T, D, NB>> for InFours {
+    const IN_CELLS: bool = true;
+    const IN_FOURS: bool = true;
     const NON_LOCAL: bool = true;
 
-    fn take_in_field<Q: Field<T>>(&mut self, cloud: &Cloud<'_, T, D>, value: &(impl Values<T, Q> + Sync)) {
-        self.sum_field(cloud, value);
+    #[inline(always)]
+    fn cells<Q: Field<T>>(
+        fits: &RelaxedTaylor<T, D, NB>,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        value: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        fits.integrate_cells(cloud, cells, value, sink);
     }
 
-    fn line(&self) -> impl Iterator<Item = T> {
-        self.rule.line()
+    #[inline(always)]
+    fn conserved_cells<Q: Field<T>>(
+        fits: &RelaxedTaylor<T, D, NB>,
+        cloud: &Cloud<'_, T, D>,
+        cells: Range<usize>,
+        amount: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<T, D>, Q),
+    ) {
+        fits.integrate_conserved_cells(cloud, cells, amount, sink);
+    }
+
+    fn take_in_field<Q: Field<T>>(
+        fits: &mut RelaxedTaylor<T, D, NB>,
+        cloud: &Cloud<'_, T, D>,
+        value: &(impl Values<T, Q> + Sync),
+    ) {
+        fits.sum_field(cloud, value);
+    }
+
+    fn line(fits: &RelaxedTaylor<T, D, NB>) -> impl Iterator<Item = T> {
+        fits.rule.line()
     }
 
     #[inline(always)]
     fn integrate_batch<K: Packs<T>, Q: Field<T>>(
-        &self,
+        fits: &RelaxedTaylor<T, D, NB>,
         k: K,
         (cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
         _conserve: bool,
@@ -283,24 +311,24 @@ impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for RelaxedTayl
     ) -> BatchStatus {
         let (group, volume) = (cells.start / LANES, cloud.grid.cell_volume());
         if const { are_few::<T, Q, D>() } {
-            let coefficients = self.integrated::<K, Q, FEW_COMPONENTS>(k, group);
-            self.rule
+            let coefficients = fits.integrated::<K, Q, FEW_COMPONENTS>(k, group);
+            fits.rule
                 .emit_lanes(k, volume, &coefficients, Q::COMPONENTS, &mut sink);
         } else {
-            let coefficients = self.integrated::<K, Q, MOST_COMPONENTS>(k, group);
-            self.rule
+            let coefficients = fits.integrated::<K, Q, MOST_COMPONENTS>(k, group);
+            fits.rule
                 .emit_lanes(k, volume, &coefficients, Q::COMPONENTS, &mut sink);
         }
-        self.batch_status(cells)
+        fits.batch_status(cells)
     }
 
-    fn weighted_line(&self) -> impl Iterator<Item = (T, T)> {
-        self.rule.weighted_line()
+    fn weighted_line(fits: &RelaxedTaylor<T, D, NB>) -> impl Iterator<Item = (T, T)> {
+        fits.rule.weighted_line()
     }
 
     #[inline(always)]
     fn fit_batch<K: Packs<T>, Q: Field<T>>(
-        &self,
+        fits: &RelaxedTaylor<T, D, NB>,
         k: K,
         (_cloud, cells): (&Cloud<'_, T, D>, Range<usize>),
         _conserve: bool,
@@ -312,25 +340,25 @@ impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for RelaxedTayl
         if const { are_few::<T, Q, D>() } {
             hand_over(
                 k,
-                &self.integrated::<K, Q, FEW_COMPONENTS>(k, group),
+                &fits.integrated::<K, Q, FEW_COMPONENTS>(k, group),
                 Q::COMPONENTS,
                 sink,
             );
         } else {
             hand_over(
                 k,
-                &self.integrated::<K, Q, MOST_COMPONENTS>(k, group),
+                &fits.integrated::<K, Q, MOST_COMPONENTS>(k, group),
                 Q::COMPONENTS,
                 sink,
             );
         }
-        self.batch_status(cells)
+        fits.batch_status(cells)
     }
 
     #[cold]
     #[inline(never)]
     fn integrate_single<Q: Field<T>>(
-        &self,
+        fits: &RelaxedTaylor<T, D, NB>,
         cloud: &Cloud<'_, T, D>,
         cell: usize,
         _conserve: bool,
@@ -338,7 +366,7 @@ impl<T: Scalar, const D: usize, const NB: usize> FourCells<T, D> for RelaxedTayl
         sink: &mut dyn FnMut(&Point<T, D>, Q),
     ) -> bool {
         if let Some(place) = cloud.bins.place_of(cell, 0) {
-            self.integrate_apart(cloud, place, value, sink);
+            fits.integrate_apart(cloud, place, value, sink);
         }
         true
     }

@@ -8,7 +8,7 @@ use super::{ALIKE, GROUPS, RelaxedTaylor};
 use crate::field::Field;
 use crate::parallel::each_span;
 use crate::reconstruction::taylor::{CellGroup, Weighted, local};
-use crate::reconstruction::{Cloud, CourantNumbers, FourCells, Patch, Stored};
+use crate::reconstruction::{Cloud, CourantNumbers, Patch, Stored};
 use crate::scalar::Scalar;
 use crate::simd::{LANES, Number, Packs, dispatch};
 use crate::taylor::{CellFit, FEW_COMPONENTS, MOST_COMPONENTS, Rights, are_few, factorise};
@@ -22,7 +22,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         values: &mut [Q],
     ) {
         let taken: &[Q] = values;
-        self.take_in_field(cloud, &Stored(taken));
+        self.sum_field(cloud, &Stored(taken));
         let mut pulls = std::mem::replace(&mut self.pulls, Corrections::none());
         let rows = pulls.rows(self.cells.len(), NB * Q::COMPONENTS);
         let this = &*self;

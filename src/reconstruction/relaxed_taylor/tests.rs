@@ -64,7 +64,7 @@ fn a_slope_from_the_neighbours_leaves_the_mean_of_a_cell_alone() {
             fit.prepare(&cloud);
             let pull = |fit: &mut RelaxedTaylor<f64, 1, 3>, stress: &[f64]| {
                 let mut sum = 0.0;
-                fit.take_in_field(&cloud, &Stored(stress));
+                fit.sum_field(&cloud, &Stored(stress));
                 fit.integrate_cells(&cloud, 2..3, |p| stress[p], |_, weighted| sum += weighted);
                 sum
             };

@@ -33,7 +33,8 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
         mass: 2.0,
         momentum: vector![1.0, 0.0],
     };
-    let four = taylor.integrate_batch::<Plain, MassMomentum<f64, 2>>(
+    let four = InFours::integrate_batch::<Plain, MassMomentum<f64, 2>>(
+        &taylor,
         Plain,
         (&cloud, 0..2),
         true,
@@ -43,7 +44,8 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
     );
     assert_eq!(four.hard, [false, true, false, false]);
     let momentum = |p: usize| density(p).momentum;
-    let any = taylor.integrate_batch::<Plain, SVector<f64, 2>>(
+    let any = InFours::integrate_batch::<Plain, SVector<f64, 2>>(
+        &taylor,
         Plain,
         (&cloud, 0..2),
         true,
@@ -58,7 +60,9 @@ fn a_density_is_kept_positive_where_four_cells_are_streamed_at_once() {
         sum += weighted.mass;
     };
     // Particles at one end do not determine all functions.
-    assert!(!taylor.integrate_single(&cloud, 1, true, &density, &mut add));
+    assert!(!InFours::integrate_single(
+        &taylor, &cloud, 1, true, &density, &mut add
+    ));
     // A hundredth of the mean at one of four points that weigh the same.
     assert!(
         (least - 0.6 / 400.0).abs() < 1e-15 && (sum - 0.6).abs() < 1e-15,
@@ -96,7 +100,8 @@ fn the_order_of_particles_does_not_matter() {
             let add = |_: usize, value: &[Four<f64>; MOST_COMPONENTS]| {
                 found.extend(value[..2].iter().flat_map(|q| q.0));
             };
-            let four = taylor.integrate_batch::<Plain, _>(
+            let four = InFours::integrate_batch::<Plain, _>(
+                &taylor,
                 Plain,
                 (&cloud, cells),
                 conserve,
@@ -130,7 +135,8 @@ fn a_field_of_many_components_is_streamed_along_one_axis_too() {
     let (mut single, mut all) = (Vec::new(), Vec::new());
     for c in 0..3 {
         let one = |p: usize| component(p, c);
-        taylor.integrate_batch::<Plain, f64>(
+        InFours::integrate_batch::<Plain, f64>(
+            &taylor,
             Plain,
             (&cloud, 0..4),
             false,
@@ -142,7 +148,8 @@ fn a_field_of_many_components_is_streamed_along_one_axis_too() {
         );
     }
     let three = |p: usize| SVector::<f64, 3>::from_fn(|c, _| component(p, c));
-    taylor.integrate_batch::<Plain, SVector<f64, 3>>(
+    InFours::integrate_batch::<Plain, SVector<f64, 3>>(
+        &taylor,
         Plain,
         (&cloud, 0..4),
         false,

@@ -9,7 +9,7 @@ use crate::field::Field;
 use crate::grid::Grid;
 use crate::mass::VelocityMass;
 use crate::reconstruction::{
-    BatchStatus, CellStream, Cloud, FourCells, InFours, Kept, NoFilter, Point, Reconstruction, Taylor, Values,
+    BatchStatus, CellStream, Cloud, InFours, Kept, NoFilter, Point, Reconstruction, Streams, Taylor, Values,
 };
 use crate::simd::{LANES, Packs};
 use crate::taylor::MOST_COMPONENTS;
@@ -83,17 +83,42 @@ impl CellStream<f64, 1> for Doors {
     }
 }
 
-impl FourCells<f64, 1> for Doors {
-    fn line(&self) -> impl Iterator<Item = f64> {
-        self.0.line()
+impl Streams<f64, 1, Doors> for InFours {
+    const IN_CELLS: bool = true;
+    const IN_FOURS: bool = true;
+
+    #[inline(always)]
+    fn cells<Q: Field<f64>>(
+        doors: &Doors,
+        cloud: &Cloud<'_, f64, 1>,
+        cells: Range<usize>,
+        value: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<f64, 1>, Q),
+    ) {
+        doors.integrate_cells(cloud, cells, value, sink);
     }
 
-    fn weighted_line(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.0.weighted_line()
+    #[inline(always)]
+    fn conserved_cells<Q: Field<f64>>(
+        doors: &Doors,
+        cloud: &Cloud<'_, f64, 1>,
+        cells: Range<usize>,
+        amount: impl Fn(usize) -> Q,
+        sink: impl FnMut(&Point<f64, 1>, Q),
+    ) {
+        doors.integrate_conserved_cells(cloud, cells, amount, sink);
+    }
+
+    fn line(doors: &Doors) -> impl Iterator<Item = f64> {
+        InFours::line(&doors.0)
+    }
+
+    fn weighted_line(doors: &Doors) -> impl Iterator<Item = (f64, f64)> {
+        InFours::weighted_line(&doors.0)
     }
 
     fn integrate_batch<K: Packs<f64>, Q: Field<f64>>(
-        &self,
+        doors: &Doors,
         k: K,
         batch: (&Cloud<'_, f64, 1>, Range<usize>),
         conserve: bool,
@@ -101,25 +126,26 @@ impl FourCells<f64, 1> for Doors {
         value: &impl Values<f64, Q>,
         mut sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> BatchStatus {
-        let taylor = &self.0;
-        let mut four = taylor.integrate_batch::<K, Q>(k, batch, conserve, kept, value, |number, values| {
-            let mut values = *values;
-            let [a, b, c, d] = k.array(values[0]);
-            match self.1 {
-                Door::Four => values[0] = k.splat(0.0) - values[0],
-                Door::Lane => values[0] = k.pack([b, b, c, d]),
-                _ => values[0] = k.pack([a, b, c, d]),
-            }
-            sink(number, &values);
-        });
-        if matches!(self.1, Door::Hard | Door::AllHard) {
+        let taylor = &doors.0;
+        let mut four =
+            InFours::integrate_batch::<K, Q>(taylor, k, batch, conserve, kept, value, |number, values| {
+                let mut values = *values;
+                let [a, b, c, d] = k.array(values[0]);
+                match doors.1 {
+                    Door::Four => values[0] = k.splat(0.0) - values[0],
+                    Door::Lane => values[0] = k.pack([b, b, c, d]),
+                    _ => values[0] = k.pack([a, b, c, d]),
+                }
+                sink(number, &values);
+            });
+        if matches!(doors.1, Door::Hard | Door::AllHard) {
             four.hard = [true; LANES];
         }
         four
     }
 
     fn fit_batch<K: Packs<f64>, Q: Field<f64>>(
-        &self,
+        doors: &Doors,
         k: K,
         batch: (&Cloud<'_, f64, 1>, Range<usize>),
         conserve: bool,
@@ -127,20 +153,20 @@ impl FourCells<f64, 1> for Doors {
         value: &impl Values<f64, Q>,
         sink: impl FnMut(usize, &[K::V; MOST_COMPONENTS]),
     ) -> BatchStatus {
-        self.0.fit_batch::<K, Q>(k, batch, conserve, kept, value, sink)
+        InFours::fit_batch::<K, Q>(&doors.0, k, batch, conserve, kept, value, sink)
     }
 
     fn integrate_single<Q: Field<f64>>(
-        &self,
+        doors: &Doors,
         cloud: &Cloud<'_, f64, 1>,
         cell: usize,
         conserve: bool,
         value: &dyn Fn(usize) -> Q,
         sink: &mut dyn FnMut(&Point<f64, 1>, Q),
     ) -> bool {
-        let factor = if self.1 == Door::Hard { 1.0 + 1e-9 } else { 1.0 };
+        let factor = if doors.1 == Door::Hard { 1.0 + 1e-9 } else { 1.0 };
         let value = |p| value(p).scaled(factor);
-        self.0.integrate_single(cloud, cell, conserve, &value, sink)
+        InFours::integrate_single(&doors.0, cloud, cell, conserve, &value, sink)
     }
 }
 

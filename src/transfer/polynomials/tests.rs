@@ -8,7 +8,7 @@ use crate::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use crate::field::{Field, MassMomentum, Symmetric};
 use crate::grid::Grid;
 use crate::particles::{Bins, Domains, lattice};
-use crate::reconstruction::{Cloud, Densities, FourCells, Point, Stresses, Taylor, Values};
+use crate::reconstruction::{Cloud, Densities, InFours, Point, Streams, Stresses, Taylor, Values};
 use crate::transfer::{
     Fits, Integrand, MassesAndMomenta, Parts, Seer, Stress, Sum, Sweep, at_fixed_points, components_of,
     look_up,
@@ -86,7 +86,14 @@ where
                 add(by_points, dof, Sum::of(&parts, phi, &gradient));
             });
         };
-        taylor.integrate_single(cloud, cell as usize, I::CONSERVED, &|p| value.at(p), &mut stream);
+        InFours::integrate_single(
+            taylor,
+            cloud,
+            cell as usize,
+            I::CONSERVED,
+            &|p| value.at(p),
+            &mut stream,
+        );
     }
     found
 }
