@@ -32,7 +32,6 @@ mod body_forces;
 mod bound;
 mod checkpoint;
 mod contact;
-mod copy;
 mod critical;
 mod diagnostics;
 mod diffusion;
@@ -92,7 +91,7 @@ use pairs::Pairs;
 use spans::{SCALARS, Spans, VECTORS};
 
 /// Steps particles through time. See the [module](self) for the algorithm.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Stepper<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>, X: Transfer<T, D> = Flip>
 where
     T: Scalar,
