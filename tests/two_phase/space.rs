@@ -3,9 +3,11 @@
 //! Source: the series of one-dimensional consolidation (Terzaghi), for a load that comes within a time. Goal:
 //! a column in space between smooth walls is the column of one dimension, along every axis. Parameters: a
 //! column 1 m high and two cells wide, drained at the top, loaded there by 10 kPa within 0.05 s, Poisson's
-//! ratio 0.2; ten cells high, two particles per cell and axis, TLS three; 0.25 s. Expected: the pressure
-//! within 1 % of the load of the series, as in the plane and along one axis; the same along every axis to
-//! round-off; the pressure in the files.
+//! ratio 0.2; ten cells high, two particles per cell and axis, TLS three; 0.25 s. Expected: at ten cells the
+//! pressure within 3 % of the load of the series, and within 0.2 % as near to it as along one axis; the same
+//! along every axis to round-off; the pressure in the files. B-splines with TLS are left out: in space, where
+//! no even part of the load is taken from the stress, they are three times as far from the series as along one
+//! axis (docs/verification/two-phase.md).
 
 use std::f64::consts::PI;
 
