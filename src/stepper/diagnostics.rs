@@ -1,5 +1,7 @@
 //! What is counted and measured along the way.
 
+use std::ops::Range;
+
 use nalgebra::SVector;
 
 use super::Stepper;
@@ -8,6 +10,7 @@ use super::spans::Totals;
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
 use crate::law::LawSweep;
+use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
 use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
@@ -233,40 +236,68 @@ fn kinetic_energy<T: Scalar, const D: usize, N, P: Phase<T, D>>(
 }
 
 #[inline(never)]
-fn strain_energy<T: Scalar, const D: usize, L: LawSweep<T, D>, P: Phase<T, D>>(
+fn strain_energy<T, const D: usize, L, P>(
     law: &L,
     phase: &P,
     particles: &Particles<T, D, L::Number, P::Particle>,
-) -> T {
-    let mut densities = [T::zero(); BLOCK];
-    let (each, mut sum) = (law.numbers(), T::zero());
-    for first in (0..particles.len()).step_by(BLOCK) {
-        let end = (first + BLOCK).min(particles.len());
-        let states = &particles.state[first * each..end * each];
-        law.energy_densities(&particles.stress[first..end], states, &mut densities);
-        for (p, &solid) in (first..end).zip(&densities) {
-            let mut density = solid;
-            if P::COUPLED {
-                density += phase.energy_density(&particles.phase[p]);
+) -> T
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+{
+    let each = law.numbers();
+    sum_of_spans(&particles.position, &|span| {
+        let (mut densities, mut sum) = ([T::zero(); BLOCK], T::zero());
+        for first in span.clone().step_by(BLOCK) {
+            let end = (first + BLOCK).min(span.end);
+            let states = &particles.state[first * each..end * each];
+            law.energy_densities(&particles.stress[first..end], states, &mut densities);
+            for (p, &solid) in (first..end).zip(&densities) {
+                let mut density = solid;
+                if P::COUPLED {
+                    density += phase.energy_density(&particles.phase[p]);
+                }
+                sum += density * particles.volume[p];
             }
-            sum += density * particles.volume[p];
         }
-    }
-    sum
+        sum
+    })
 }
 
 #[inline(never)]
-fn kinetic_energy_across<T: Scalar, const D: usize, N, P: Phase<T, D>>(
+fn kinetic_energy_across<T: Scalar, const D: usize, N: Sync, P: Phase<T, D>>(
     phase: &P,
     particles: &Particles<T, D, N, P::Particle>,
     [solid, liquid]: &[Vec<SVector<T, D>>; 2],
 ) -> T {
-    let mut twice = T::zero();
-    for ((before, now), &mass) in solid.iter().zip(&particles.velocity).zip(&particles.mass) {
-        twice += before.dot(now) * mass;
-    }
-    for ((before, data), &volume) in liquid.iter().zip(&particles.phase).zip(&particles.volume) {
-        twice += before.dot(&phase.liquid(data).velocity) * phase.liquid_mass(volume);
-    }
+    let twice = sum_of_spans(&particles.position, &|span| {
+        let mut twice = T::zero();
+        for p in span {
+            twice += solid[p].dot(&particles.velocity[p]) * particles.mass[p];
+            if P::FLOWS {
+                let now = phase.liquid(&particles.phase[p]).velocity;
+                twice += liquid[p].dot(&now) * phase.liquid_mass(particles.volume[p]);
+            }
+        }
+        twice
+    });
     twice / T::lit(2.0)
+}
+
+/// What `of` says of each span of particles, added up in their order, so that any number of threads gives the
+/// same bits. A run samples its energy hundreds of times: where threads share the step they share that too.
+#[inline(never)]
+fn sum_of_spans<T: Scalar, const D: usize>(
+    positions: &[SVector<T, D>],
+    of: &(dyn Fn(Range<usize>) -> T + Sync),
+) -> T {
+    let mut sums = vec![T::zero(); positions.len().div_ceil(PARTICLES)];
+    // Only to be cut at spans; a particle's data are found by its number.
+    let work = (positions, PerSpan(&mut sums[..]));
+    let parallel = worth_sharing::<D>(positions.len(), PARTICLES);
+    each_span(parallel, PARTICLES, work, &|first, (positions, sum)| {
+        sum.set(of(first..first + positions.len()));
+    });
+    sums.into_iter().fold(T::zero(), |total, sum| total + sum)
 }

@@ -17,8 +17,14 @@ use crate::scene::Scene;
 use materialpoint::error::StepError;
 use materialpoint::stepper::Simulation;
 
-/// Energy is sampled this often in a run: often enough to see it grow, seldom enough to cost nothing.
-pub(super) const ENERGY_SAMPLES: usize = 1000;
+/// How often the energy of so many particles is sampled in a run: often enough to see it grow, seldom enough
+/// to cost nothing.
+///
+/// Along one axis a sample takes as long as two steps. A thousand of them are a hundredth of a second for
+/// two thousand particles; for more there are fewer, so that they remain that, and at least twenty.
+pub(super) fn energy_samples(particles: usize) -> usize {
+    (2_000_000 / particles.max(1)).clamp(20, 1000)
+}
 
 /// A run to march through.
 pub(super) struct RunPlan<'a> {
@@ -268,6 +274,14 @@ mod tests {
     fn run_with(set: &str) -> Result<f64, RunError> {
         let scene = Scene::from_toml(BAR, &[set.to_owned()]).unwrap();
         run(&scene, None, &mut |_| {}).map(|outcome| outcome.summary.energy.last)
+    }
+
+    #[test]
+    fn samples_of_the_energy_grow_fewer_with_the_particles() {
+        assert_eq!(
+            [0, 1, 2000, 20_000, 100_000, usize::MAX].map(energy_samples),
+            [1000, 1000, 1000, 100, 20, 20]
+        );
     }
 
     #[test]

@@ -37,7 +37,7 @@ use std::path::{Path, PathBuf};
 use checkpoint::Checkpoint;
 use frames::{Frames, Moment};
 use loads::forcing;
-use march::{ENERGY_SAMPLES, Milestone, RunPlan, march};
+use march::{Milestone, RunPlan, energy_samples, march};
 use particle_fields::Snapshot;
 use schedule::Schedule;
 
@@ -178,7 +178,7 @@ where
     let missing = frames.warning();
     let journey = RunPlan {
         scene,
-        samples: ENERGY_SAMPLES,
+        samples: energy_samples(simulation.particle_count()),
         from,
     };
     let march = march(
