@@ -17,6 +17,9 @@ use crate::scene::Scene;
 use materialpoint::error::StepError;
 use materialpoint::stepper::Simulation;
 
+/// How often a run says how far it is.
+const REPORTS: usize = 1000;
+
 /// How often the energy of so many particles is sampled in a run: often enough to see it grow, seldom enough
 /// to cost nothing.
 ///
@@ -89,6 +92,7 @@ impl EnergyRange {
 /// What is to be done after a step.
 struct Due {
     frame: bool,
+    report: bool,
     sample: bool,
     checkpoint: bool,
 }
@@ -98,10 +102,11 @@ impl RunPlan<'_> {
         let output = &self.scene.output;
         let every = |period: usize| period > 0 && done.is_multiple_of(period);
         let frame = every(output.every) && done < steps;
-        let sample_every = steps.div_ceil(self.samples.max(1)).max(1);
+        let is_one_of = |many: usize| every(steps.div_ceil(many.max(1))) || done == steps || frame;
         Due {
             frame,
-            sample: done.is_multiple_of(sample_every) || done == steps || frame,
+            report: is_one_of(REPORTS),
+            sample: is_one_of(self.samples),
             // It samples no energy: a run with checkpoints reports what one without them does.
             checkpoint: every(output.checkpoint_every),
         }
@@ -111,7 +116,7 @@ impl RunPlan<'_> {
 /// Steps `simulation` to the end, writing particles and checkpoints when the scene asks for it, and sampling
 /// the energy. Steps that are renewed change `schedule`.
 pub(super) fn march<const D: usize>(
-    journey: &RunPlan<'_>,
+    plan: &RunPlan<'_>,
     schedule: &mut Schedule,
     simulation: &mut dyn Simulation<D>,
     frames: &mut Frames<'_>,
@@ -120,7 +125,7 @@ pub(super) fn march<const D: usize>(
 where
     Scene: InSpace<D>,
 {
-    let RunPlan { scene, from, .. } = journey;
+    let RunPlan { scene, from, .. } = plan;
     let mut march = March {
         energy: from.energy,
         ..March::default()
@@ -148,7 +153,7 @@ where
         }
         let kick = schedule.kick(step, scene.time.half_kick);
         let done = step + 1;
-        let due = journey.due(done, schedule.steps);
+        let due = plan.due(done, schedule.steps);
         // The energy of a step is that at its start, the first one's that at the start of the run.
         let measured = match due.sample || step == 0 {
             true => simulation.step_and_measure(kick, dt, &forcing).map(Some),
@@ -160,7 +165,7 @@ where
             refuse_no_energy((scene, schedule), energy.total(), done)?;
             march.energy.sample(energy.total());
         }
-        if due.sample || due.checkpoint {
+        if due.report || due.sample || due.checkpoint {
             // The clock runs for the step loop only.
             march.wall += begun.elapsed();
             if due.checkpoint || due.frame || done == schedule.steps {
@@ -245,6 +250,7 @@ fn refuse_no_energy((scene, schedule): (&Scene, &Schedule), value: f64, step: us
 
 #[cfg(test)]
 mod tests {
+    use super::energy_samples;
     use crate::run::{RunError, run};
     use crate::scene::Scene;
 

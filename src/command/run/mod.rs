@@ -176,18 +176,12 @@ where
     }
     let removed = frames.clear(resumed);
     let missing = frames.warning();
-    let journey = RunPlan {
+    let plan = RunPlan {
         scene,
         samples: energy_samples(simulation.particle_count()),
         from,
     };
-    let march = march(
-        &journey,
-        &mut schedule,
-        simulation.as_mut(),
-        &mut frames,
-        progress,
-    )?;
+    let march = march(&plan, &mut schedule, simulation.as_mut(), &mut frames, progress)?;
     let mut summary = Summary::new(scene, simulation.as_ref(), &schedule, &march);
     summary.warnings = limits::warnings(scene, &schedule, summary.energy_gain(scene));
     summary.warnings.extend(warnings::warnings::<D>(scene)?);
@@ -272,13 +266,13 @@ where
 {
     let (mut schedule, mut simulation) = begin(scene)?;
     let mut frames = Frames::new(scene, None, Vec::new());
-    let journey = RunPlan {
+    let plan = RunPlan {
         scene,
         samples: 1,
         from: Milestone::default(),
     };
     let march = march(
-        &journey,
+        &plan,
         &mut schedule,
         simulation.as_mut(),
         &mut frames,
