@@ -65,6 +65,14 @@ pub enum SetupError {
         "relaxed Taylor least squares know one phase only beyond one axis so far; with a liquid that flows use Shepard or Taylor"
     )]
     OnePhaseOnly,
+    /// A series of the particles' matrix beyond one axis with a basis whose DOFs have no places.
+    #[error(
+        "a series of the consistent mass wants a basis that is a product along the axes and reproduces linear functions"
+    )]
+    NoPlaces,
+    /// A series of the particles' matrix with a liquid that flows.
+    #[error("a series of the consistent mass knows one phase only so far")]
+    SeriesWithFlow,
     /// A transfer from the grid with what it does not serve.
     #[error("a transfer that gives particles their velocities from the grid needs {reason}")]
     FromGrid {

@@ -13,6 +13,7 @@ mod golden;
 mod hard_cases;
 mod identities;
 mod laws;
+mod nodal;
 mod phase;
 mod scenes;
 mod space;

@@ -332,6 +332,20 @@ impl<T: Scalar> Banded<T> {
         y
     }
 
+    /// `y = M x` of one component, before the matrix is factorised.
+    pub(crate) fn multiply_column(&self, x: &[T], y: &mut [T]) {
+        y.fill(T::zero());
+        for i in 0..self.order.min(x.len()).min(y.len()) {
+            for j in i.saturating_sub(self.half_band)..=i {
+                let entry = self.rows[self.at(i, j)];
+                y[i] += x[j] * entry;
+                if j < i {
+                    y[j] += x[i] * entry;
+                }
+            }
+        }
+    }
+
     /// Adds to `y` the product with `x` of the matrix before it is factorised.
     pub fn add_product<const D: usize>(&self, x: &[SVector<T, D>], y: &mut [SVector<T, D>]) {
         for i in 0..self.order.min(x.len()).min(y.len()) {

@@ -14,5 +14,5 @@ pub(crate) use banded::banded_row;
 pub use gradients::ConjugateGradients;
 pub use lattice::Lattice;
 pub(crate) use model::{Divisor, sealed::Divides};
-pub use model::{MassModel, ParticleMass, ParticleMatrix, VelocityMass};
+pub use model::{MassModel, ParticleMass, ParticleMatrix, ParticleSeries, VelocityMass};
 pub use penalty::Penalty;

@@ -8,6 +8,7 @@
 mod filter;
 mod four_cells;
 mod gauss;
+mod nodal_taylor;
 mod patch;
 mod points;
 mod relaxed_taylor;
@@ -21,7 +22,9 @@ pub(crate) use filter::sealed::Filters;
 pub(crate) use filter::{CourantNumbers, Filling};
 pub use filter::{Filter, NoFilter, NullSpace};
 pub(crate) use four_cells::{BatchStatus, InFours, Kept, batch_of_cells};
+pub use nodal_taylor::NodalTaylor;
 pub use patch::{Cut, Patch};
+
 pub(crate) use points::sealed::Streams;
 pub use points::{Anywhere, AtParticles, CellStream, InCells, PointSet};
 pub use relaxed_taylor::{Relaxation, RelaxedTaylor};

@@ -21,7 +21,8 @@ pub(super) fn accelerate<T: Scalar, const D: usize>(
     balance: &mut Balance<T, D>,
 ) {
     let body_force = walls.forcing.body_force;
-    if mass == Divisor::ParticleMatrix {
+    let in_matrix = matches!(mass, Divisor::ParticleMatrix | Divisor::ParticleSeries(_));
+    if in_matrix {
         for (force, &mass) in dofs.force.iter_mut().zip(&dofs.mass) {
             *force += body_force * mass;
         }
@@ -36,7 +37,7 @@ pub(super) fn accelerate<T: Scalar, const D: usize>(
             move || divide_by_masses(forces, masses, body_force),
         );
     }
-    let is_lumped = mass != Divisor::ParticleMatrix;
+    let is_lumped = !in_matrix;
     // One after another: where faces meet, the later one finds what the earlier one has prescribed.
     walls.for_each_held(|dof, axis, _, acceleration| {
         let force = &mut dofs.force[dof][axis];

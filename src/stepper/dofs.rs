@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use super::matrix::MassMatrix;
+use super::series::Series;
 use super::velocity::sum;
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
@@ -23,6 +24,8 @@ pub(super) struct Dofs<T, const D: usize> {
     pub(super) lumped: Vec<T>,
     /// Consistent mass; of order zero where it is not used.
     pub(super) matrix: MassMatrix<T, D>,
+    /// What the terms of a series are summed in; of no DOF where there is none.
+    pub(super) series: Series<T, D>,
 }
 
 impl<T: Scalar, const D: usize> Dofs<T, D> {
@@ -34,6 +37,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             velocity: Vec::new(),
             lumped: Vec::new(),
             matrix: MassMatrix::none(),
+            series: Series::new(0),
         }
     }
 
@@ -52,6 +56,10 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
                 true => MassMatrix::new(basis, grid, mass == Divisor::ParticleMatrix),
                 false => MassMatrix::none(),
             },
+            series: Series::new(match mass {
+                Divisor::ParticleSeries(_) => count,
+                _ => 0,
+            }),
         }
     }
 
@@ -62,6 +70,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             mass: match mass {
                 Divisor::Particles => sum(&self.mass),
                 Divisor::FittedLumped => sum(&self.lumped),
+                Divisor::ParticleSeries(_) => sum(&self.mass),
                 Divisor::FittedMatrix { .. } | Divisor::ParticleMatrix => self.matrix.total(),
             },
             momentum: sum(&self.velocity),
@@ -71,6 +80,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
     pub(super) fn bytes(&self) -> usize {
         size_of::<T>() * (self.mass.len() + self.lumped.len())
             + self.matrix.bytes()
+            + self.series.bytes()
             + 2 * size_of::<SVector<T, D>>() * self.force.len()
     }
 }

@@ -9,6 +9,7 @@ use super::{FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
 use crate::law::LawSweep;
+use crate::mass::MassModel;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
@@ -43,6 +44,14 @@ where
         let bodies = self.particles.sites(self.bins.cells());
         let (masses, matrix) = (&self.particles.mass[..], &mut self.dofs.matrix);
         fill_with_pairs(&self.basis, &self.grid, bodies, masses, &mut self.pairs, matrix);
+        if const { R::Mass::SERIES } {
+            if D > 1 {
+                let space = (&self.basis, &self.grid, &self.bins);
+                let deflation = &mut self.dofs.series.deflation;
+                deflation.find_bodies(space, &self.places, &self.dofs.mass);
+            }
+            return;
+        }
         if D > 1 {
             self.tie_partly_filled_cells();
         }

@@ -343,15 +343,24 @@ fn tensor_lanes<T: Scalar, K: Packs<T, N>, const N: usize, const D: usize>(
     )
 }
 
-/// Places of the DOFs, where the transfer asks for them.
-pub(super) fn dof_places<T: Scalar, const D: usize, B: BasisFamily<T, D>, X: Transfer<T, D>>(
+/// Places of the DOFs, where the transfer or the mass asks for them.
+pub(super) fn dof_places<T, const D: usize, B, M, X>(
     basis: &B,
     grid: &Grid<T, D>,
-) -> Result<DofPlaces<T, D>, SetupError> {
+) -> Result<DofPlaces<T, D>, SetupError>
+where
+    T: Scalar,
+    B: BasisFamily<T, D>,
+    M: MassModel,
+    X: Transfer<T, D>,
+{
     let reason = "a basis that is a product along the axes and reproduces linear functions";
-    match const { X::FROM_GRID } {
-        true => DofPlaces::of(basis, grid).ok_or(SetupError::FromGrid { reason }),
-        false => Ok(DofPlaces::none()),
+    if const { X::FROM_GRID } {
+        DofPlaces::of(basis, grid).ok_or(SetupError::FromGrid { reason })
+    } else if const { M::SERIES && D > 1 } {
+        DofPlaces::of(basis, grid).ok_or(SetupError::NoPlaces)
+    } else {
+        Ok(DofPlaces::none())
     }
 }
 

@@ -132,6 +132,16 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
         }
     }
 
+    /// `y = M x`.
+    #[inline(never)]
+    pub(super) fn multiply(&self, x: &[T], y: &mut [T]) {
+        if D == 1 {
+            self.band.multiply_column(x, y);
+        } else {
+            self.lattice.multiply(x, y);
+        }
+    }
+
     /// Sum of all entries.
     pub(super) fn total(&self) -> T {
         if D == 1 {
@@ -155,6 +165,9 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
         fresh: bool,
         pick: &dyn Fn(T, T) -> T,
     ) {
+        if let Divisor::ParticleSeries(terms) = mass {
+            return self.sum_series(unknown, terms, walls, pick);
+        }
         if D > 1 {
             return self.iterate(unknown, mass, walls, pick);
         }

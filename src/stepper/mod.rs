@@ -33,6 +33,7 @@ mod bound;
 mod checkpoint;
 mod contact;
 mod critical;
+mod deflation;
 mod diagnostics;
 mod diffusion;
 mod dofs;
@@ -53,6 +54,7 @@ mod pairs;
 mod parts;
 mod polynomial;
 mod relax;
+mod series;
 mod setup;
 mod simulation;
 mod spans;
@@ -263,7 +265,7 @@ where
                 self.joint = liquid::Joint::new(basis, grid, self.particles.len());
             }
         }
-        if X::FROM_GRID {
+        if X::FROM_GRID || (R::Mass::SERIES && D > 1) {
             self.places.follow(basis, grid);
         }
         if P::DIFFUSES {
@@ -636,6 +638,9 @@ where
     check_material(&setup.law, &setup.phase, particles)?;
     domain::lay::<T, D, B, _, _>(&setup.grid, particles);
     domain::validate::<T, D, B, _, _>(&setup.grid, particles)?;
+    if P::FLOWS && R::Mass::SERIES {
+        return Err(SetupError::SeriesWithFlow);
+    }
     if P::FLOWS && R::Mass::IN_ACCELERATION && D > 1 {
         return Err(SetupError::OnePhaseOnly);
     }
@@ -659,7 +664,7 @@ where
     if const { B::FOLLOWS_WINDOW } {
         window::lay(&mut setup.grid, bins.cells());
     }
-    let places = from_grid::dof_places::<T, D, B, X>(basis, &setup.grid)?;
+    let places = from_grid::dof_places::<T, D, B, R::Mass, X>(basis, &setup.grid)?;
     Ok((bins, places))
 }
 

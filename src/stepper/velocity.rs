@@ -34,7 +34,7 @@ pub(super) fn undo_mass<T: Scalar, const D: usize>(
     match mass {
         Divisor::Particles => divide(&mut dofs.velocity, &dofs.mass),
         Divisor::FittedLumped => divide(&mut dofs.velocity, &dofs.lumped),
-        Divisor::FittedMatrix { .. } | Divisor::ParticleMatrix => {
+        Divisor::FittedMatrix { .. } | Divisor::ParticleMatrix | Divisor::ParticleSeries(_) => {
             let pick = |velocity, _| velocity;
             dofs.solve(Unknown::Velocity, mass, walls, fresh, &pick);
         }
