@@ -97,7 +97,7 @@ fn where_no_patch_is_filled_the_particles_are_all_there_is() {
     // With a field that no fit follows the patch fades too.
     fits.prepare(&cloud);
     streamed.clear();
-    let rough = |p: usize| if p % 2 == 0 { 1.0 } else { -1.0 };
+    let rough = |p: usize| if p.is_multiple_of(2) { 1.0 } else { -1.0 };
     fits.integrate(&cloud, rough, |point, value: f64| {
         streamed.push((point.particle, value))
     });
