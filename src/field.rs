@@ -83,7 +83,7 @@ pub struct Symmetric<T: Scalar, const D: usize>(pub SMatrix<T, D, D>);
 pub(crate) const fn symmetric_component<const D: usize>(row: usize, column: usize) -> usize {
     if row == column {
         row
-    } else if D == 3 {
+    } else if const { D == 3 } {
         row + column + 2
     } else {
         D

@@ -341,7 +341,7 @@ pub(crate) fn product_of_rows<T: Scalar, const D: usize, const W: usize>(
 ) {
     let inverse = grid.inverse_cell_size();
     let lattice = (grid.window().first(), dofs);
-    if D == 1 {
+    if const { D == 1 } {
         let (dof, functions) = &rows[0];
         for k in 0..W {
             let slope = SVector::repeat(functions.slope[k] * inverse[0]);

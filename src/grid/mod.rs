@@ -106,7 +106,7 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
     /// cell, or each DOF, then grows with the window and not with the grid. In one dimension all keep theirs.
     #[must_use]
     pub fn with_window(mut self, window: Window<D>) -> Self {
-        if D > 1 {
+        if const { D > 1 } {
             self.window = window.within(self.cells);
         }
         self

@@ -181,7 +181,7 @@ impl<T: Scalar, const D: usize> PrincipalStretch<T, D> {
         };
         ElasticStretch {
             b: self.in_plane(&squared, shear),
-            off_plane: if D < 3 { squared[2] } else { T::one() },
+            off_plane: if const { D < 3 } { squared[2] } else { T::one() },
         }
     }
 

@@ -42,7 +42,7 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hill<T> {
 
     #[inline(always)]
     fn update(&self, increment: &SMatrix<T, D, D>, stress: &mut SMatrix<T, D, D>, _state: &mut ()) {
-        if D == 1 {
+        if const { D == 1 } {
             let modulus = self.moduli.p_wave() - stress[(0, 0)];
             stress[(0, 0)] += modulus * increment[(0, 0)];
             return;
@@ -71,7 +71,7 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for Hill<T> {
     /// Exact in 1-D: `E (J - 1 - ln J)` per reference volume with `J = 1/(1 - sigma/E)`. Beyond 1-D the rate
     /// has no potential, and this is the leading term `sigma : C^-1 : sigma / 2`.
     fn energy_density(&self, stress: &SMatrix<T, D, D>, _state: &()) -> T {
-        if D > 1 {
+        if const { D > 1 } {
             return complementary_energy(&self.moduli, stress);
         }
         let modulus = self.moduli.p_wave();

@@ -17,7 +17,7 @@ pub struct LinearElastic<T> {
 /// `lambda tr(e) 1 + 2 mu e`.
 #[inline(always)]
 pub(super) fn hooke<T: Scalar, const D: usize>(moduli: &Moduli<T>, e: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
-    if D == 1 {
+    if const { D == 1 } {
         return e * moduli.p_wave();
     }
     let mut stress = e * (moduli.mu + moduli.mu);
@@ -34,7 +34,7 @@ pub fn hooke_strain<T: Scalar, const D: usize>(
     moduli: &Moduli<T>,
     stress: &SMatrix<T, D, D>,
 ) -> SMatrix<T, D, D> {
-    if D == 1 {
+    if const { D == 1 } {
         return stress / moduli.p_wave();
     }
     let two_mu = moduli.mu + moduli.mu;
@@ -73,7 +73,7 @@ pub(super) fn complementary_energy<T: Scalar, const D: usize>(
     stress: &SMatrix<T, D, D>,
 ) -> T {
     let two = T::lit(2.0);
-    if D == 1 {
+    if const { D == 1 } {
         return stress[(0, 0)] * stress[(0, 0)] / (two * moduli.p_wave());
     }
     // Inverse of Hooke's law restricted to D dimensions.

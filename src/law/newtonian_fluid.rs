@@ -146,7 +146,10 @@ impl<T: Scalar, const D: usize> ConstitutiveLaw<T, D> for NewtonianFluid<T> {
     fn start(&self, stress: &SMatrix<T, D, D>, off_plane: Option<T>) -> Option<Self::State> {
         let pressure = -stress.trace() / T::count(D);
         let shear = (stress + SMatrix::identity() * pressure).norm();
-        let off = off_plane.map_or(T::zero(), |s| if D < 3 { s + pressure } else { T::zero() });
+        let off = off_plane.map_or(
+            T::zero(),
+            |s| if const { D < 3 } { s + pressure } else { T::zero() },
+        );
         let isotropic = shear.max(off.abs()) <= T::default_epsilon().sqrt() * pressure.abs();
         let base = T::one() + self.gamma * pressure / self.bulk_modulus;
         let borne = self.bears_tension || pressure >= T::zero();

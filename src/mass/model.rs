@@ -152,6 +152,16 @@ pub enum Divisor {
 }
 
 impl Divisor {
+    /// Whether accelerations too are solved with it.
+    pub fn is_in_acceleration(self) -> bool {
+        matches!(self, Self::ParticleMatrix | Self::ParticleSeries(_))
+    }
+
+    /// Whether it is a series.
+    pub fn is_series(self) -> bool {
+        matches!(self, Self::ParticleSeries(_))
+    }
+
     /// Whether there is a matrix.
     pub fn has_matrix(self) -> bool {
         matches!(

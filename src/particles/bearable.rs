@@ -29,12 +29,16 @@ pub(super) fn bearable<T: Scalar, const D: usize, L: LawSweep<T, D>>(
                 off_plane,
                 axis,
             };
-            let name = if D == 1 { "a stress" } else { NAMES.get(axis)? };
+            let name = if const { D == 1 } {
+                "a stress"
+            } else {
+                NAMES.get(axis)?
+            };
             Some(format!("{name} {}", search.range()?))
         })
         .collect();
     if !ranges.is_empty() {
-        let beside = if D == 1 {
+        let beside = if const { D == 1 } {
             ""
         } else {
             " beside the other components"
@@ -75,7 +79,7 @@ impl<T: Scalar, const D: usize, L: LawSweep<T, D>> Search<'_, T, D, L> {
     fn range(&self) -> Option<String> {
         let (axis, stress) = (self.axis, self.stress);
         let others = stress.trace() - stress[(axis, axis)];
-        let middle = if D == 1 {
+        let middle = if const { D == 1 } {
             T::zero()
         } else {
             others / T::count(D - 1)

@@ -21,7 +21,7 @@ pub(super) fn accelerate<T: Scalar, const D: usize>(
     balance: &mut Balance<T, D>,
 ) {
     let body_force = walls.forcing.body_force;
-    let in_matrix = matches!(mass, Divisor::ParticleMatrix | Divisor::ParticleSeries(_));
+    let in_matrix = mass.is_in_acceleration();
     if in_matrix {
         for (force, &mass) in dofs.force.iter_mut().zip(&dofs.mass) {
             *force += body_force * mass;

@@ -80,7 +80,7 @@ impl<T: Scalar, const D: usize> Balance<T, D> {
 
     /// Adds what the matrix makes of the accelerations there.
     pub(super) fn note_inertia_of_held(&mut self, dofs: &Dofs<T, D>, walls: &Walls<'_, T, D>) {
-        if D > 1 {
+        if const { D > 1 } {
             return;
         }
         walls.for_each_held(|dof, axis, _, _| {

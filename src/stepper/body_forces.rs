@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use super::Stepper;
+use super::inner::Inner;
 use super::order::Order;
 use crate::basis::BasisFamily;
 use crate::grid::Grid;
@@ -26,17 +27,31 @@ where
     /// allocates. Where a liquid flows through the pores it is the force per mass of both, the solid and the
     /// liquid that the particle holds.
     pub fn set_body_forces(&mut self, mut force: impl FnMut(&SVector<T, D>) -> SVector<T, D>) {
+        self.inner.set_body_forces(&mut force);
+    }
+}
+
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    /// See [`Stepper::set_body_forces`].
+    #[inline(never)]
+    fn set_body_forces(&mut self, force: &mut dyn FnMut(&SVector<T, D>) -> SVector<T, D>) {
         let initial = &self.particles.initial_position;
-        at_particles(initial, &self.order, &mut force, &mut self.body_forces);
+        at_particles(initial, &self.order, force, &mut self.body_forces);
     }
 
     /// `f_i += sum_p m_p b_p phi_i(x_p)`.
-    pub(super) fn add_body_forces(&mut self) {
+    pub(super) fn add_body_forces<B: BasisFamily<T, D>>(&mut self, basis: &B) {
         if const { P::FLOWS } {
-            return self.add_body_forces_to_both();
+            return self.add_body_forces_to_both(basis);
         }
         self.balance.load += add_weights(
-            (&self.basis, &self.grid, self.particles.sites(self.bins.cells())),
+            (basis, &self.grid, self.particles.sites(self.bins.cells())),
             &self.particles.mass,
             (&self.body_forces, &self.order),
             &mut self.dofs.force,
@@ -45,9 +60,9 @@ where
 
     /// The same of two: the mixture feels `(m_s + n m_w) b`, the liquid, whose balance is per porosity `n`,
     /// feels `m_w b`.
-    fn add_body_forces_to_both(&mut self) {
+    fn add_body_forces_to_both<B: BasisFamily<T, D>>(&mut self, basis: &B) {
         add_weights_of_both(
-            (&self.basis, &self.grid, self.particles.sites(self.bins.cells())),
+            (basis, &self.grid, self.particles.sites(self.bins.cells())),
             (&self.particles.mass, &self.particles.volume),
             &self.phase,
             (&self.body_forces, &self.order),

@@ -26,7 +26,10 @@
 
 use nalgebra::SVector;
 
+use super::diffusion::diffusion_geometry;
+use super::inner::Inner;
 use super::spans::{Spans, share};
+use super::sweeps::Sweeps;
 use super::waves::smaller;
 use super::{CriticalStep, FaceCondition, Forcing, Stepper};
 use crate::basis::BasisFamily;
@@ -61,26 +64,7 @@ where
         if const { X::FROM_GRID } {
             return T::lit(f64::INFINITY);
         }
-        self.prepare();
-        // With a liquid that flows of unit density, since its balances differ.
-        let weights = match P::FLOWS {
-            true => &self.particles.volume[..],
-            false => &self.particles.mass[..],
-        };
-        let held = held_dofs(forcing, &self.face_dofs, self.dofs.mass.len());
-        let waves = self.largest_ratio(&held, [weights; 2]);
-        match const { P::DIFFUSES } {
-            true => waves.max(self.diffusion_geometry()),
-            false => waves,
-        }
-    }
-
-    /// The bound that amounts of the particles give, of the mass and of the stiffness.
-    pub(super) fn largest_ratio(&self, held: &[bool], amounts: [&[T]; 2]) -> T {
-        let space = (&self.basis, &self.grid);
-        let sites = self.particles.sites(self.bins.cells());
-        let ratios = slopes_over_masses(space, sites, amounts, &self.spans, held);
-        for_values!(B, space.0, |basis| largest_mean((basis, space.1), sites, &ratios))
+        stiffness_bound(self, forcing)
     }
 
     /// Largest step (s) of a layout with this `stiffness` (1/m2, of [`Stepper::stiffness`]) for the waves and
@@ -93,6 +77,20 @@ where
     ///
     /// `None` too for a transfer from the grid, as [`Stepper::critical_step`].
     pub fn largest_step(&self, stiffness: T) -> Option<CriticalStep<T>> {
+        self.inner.largest_step(stiffness)
+    }
+}
+
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    /// See [`Stepper::largest_step`].
+    #[inline(never)]
+    fn largest_step(&self, stiffness: T) -> Option<CriticalStep<T>> {
         if const { X::FROM_GRID } {
             return None;
         }
@@ -106,6 +104,51 @@ where
                 .reduce(smaller),
             false => wave,
         }
+    }
+
+    /// The bound that amounts of the particles give, of the mass and of the stiffness; their masses if none
+    /// are given.
+    #[inline(never)]
+    pub(super) fn largest_ratio<B: BasisFamily<T, D>>(
+        &self,
+        basis: &B,
+        held: &[bool],
+        amounts: Option<[&[T]; 2]>,
+    ) -> T {
+        let amounts = amounts.unwrap_or_else(|| {
+            // With a liquid that flows of unit density, since its balances differ.
+            let weights = match P::FLOWS {
+                true => &self.particles.volume[..],
+                false => &self.particles.mass[..],
+            };
+            [weights; 2]
+        });
+        let space = (basis, &self.grid);
+        let sites = self.particles.sites(self.bins.cells());
+        let ratios = slopes_over_masses(space, sites, amounts, &self.spans, held);
+        for_values!(B, space.0, |basis| largest_mean((basis, space.1), sites, &ratios))
+    }
+}
+
+/// See [`Stepper::stiffness_bound`].
+#[inline(never)]
+fn stiffness_bound<T, const D: usize, L, P, X>(
+    stepper: &mut dyn Sweeps<T, D, L, P, X>,
+    forcing: &Forcing<T, D>,
+) -> T
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    stepper.prepare();
+    let inner = stepper.inner();
+    let held = held_dofs(forcing, &inner.face_dofs, inner.dofs.mass.len());
+    let waves = stepper.largest_ratio(&held, None);
+    match const { P::DIFFUSES } {
+        true => waves.max(diffusion_geometry(stepper)),
+        false => waves,
     }
 }
 
@@ -197,5 +240,5 @@ fn largest_mean<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
 
 #[inline(always)]
 fn length<T: Scalar, const D: usize>(v: &SVector<T, D>) -> T {
-    if D == 1 { v[0].abs() } else { v.norm() }
+    if const { D == 1 } { v[0].abs() } else { v.norm() }
 }

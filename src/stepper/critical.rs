@@ -3,17 +3,18 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::acceleration::{Walls, accelerate};
-use super::fitted::Fitted;
-use super::sums::Targets;
+use super::diffusion::{critical_diffusion, diffusion_geometry};
+use super::inner::{Given, Inner};
+use super::sweeps::Sweeps;
 use super::velocity::divide_by_mass;
 use super::waves::{Waves, smaller};
-use super::{FaceCondition, Forcing, Setup, Stepper, SurfacePoint, cloud};
+use super::{FaceCondition, Forcing, Stepper, SurfacePoint};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Face, Grid};
 use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, each_span, many_threads};
 use crate::phase::Phase;
-use crate::reconstruction::{Reconstruction, Streams, Stresses};
+use crate::reconstruction::{Reconstruction, Streams};
 use crate::scalar::Scalar;
 use crate::transfer::Transfer;
 
@@ -85,25 +86,7 @@ where
     // Out of line, as all that is asked once in a run: a stepper is compiled for every method.
     #[inline(never)]
     pub fn into_critical_step(mut self, forcing: &Forcing<T, D>) -> Option<CriticalStep<T>> {
-        if const { X::FROM_GRID } {
-            return None;
-        }
-        if const { P::FLOWS } {
-            let geometry = self.eigenvalue_of_unit_density(forcing)?;
-            return self.waves().critical_step_of_both(geometry);
-        }
-        let diffusion = match const { P::DIFFUSES } {
-            true => self.critical_diffusion(),
-            false => None,
-        };
-        let speed = self.waves().largest_speed();
-        let wave = self
-            .largest_eigenvalue(forcing, speed)
-            .map(|eigenvalue| CriticalStep {
-                step: T::lit(2.0) / eigenvalue.sqrt(),
-                mechanism: Mechanism::Wave,
-            });
-        [wave, diffusion].into_iter().flatten().reduce(smaller)
+        critical_step(&mut self, forcing)
     }
 
     /// Stiffness (1/m2) of the layout for [`Stepper::largest_step`]: [`Stepper::stiffness_bound`] where that
@@ -128,112 +111,38 @@ where
             return waves;
         }
         self.prepare();
-        let diffusion = self.diffusion_geometry();
+        let diffusion = diffusion_geometry(self);
         Some(waves.map_or(diffusion, |waves| waves.max(diffusion)))
     }
 
     fn stiffness_of_sample(&self, forcing: &Forcing<T, D>) -> Option<T> {
-        let mut sample = self.sample()?;
-        if const { P::FLOWS } {
-            return sample.eigenvalue_of_unit_density(forcing);
-        }
-        let speed = sample.waves().largest_speed();
-        Some(sample.largest_eigenvalue(forcing, speed)? / (speed * speed))
+        stiffness_of(&mut self.sample()?, forcing)
     }
 
     /// A stepper of the particles about a corner.
     fn sample(&self) -> Option<Self> {
-        if self.particles.position.len() <= SAMPLE {
+        if self.inner.particles.position.len() <= SAMPLE {
             return Some(self.clone());
         }
-        let (numbers, surface) = about_corner(self.bins.cells(), &self.surface)?;
-        let setup = Setup::new(
-            self.grid.clone(),
-            self.basis.clone(),
-            self.reconstruction.clone(),
-            self.law.clone(),
-            self.phase.clone(),
-            self.particles.picked(&numbers, self.law.numbers()),
-        )
-        .with_transfer(self.transfer.clone())
-        .with_velocity_mass(self.velocity_mass)
-        .with_surface(surface);
-        Self::new(setup).ok()
-    }
-
-    /// Largest eigenvalue for unit density and modulus; velocities and DOFs are used up.
-    #[inline(never)]
-    fn eigenvalue_of_unit_density(&mut self, forcing: &Forcing<T, D>) -> Option<T> {
-        let unit_density = self.particles.volume.clone();
-        let mass = std::mem::replace(&mut self.particles.mass, unit_density);
-        let eigenvalue = self.largest_eigenvalue(forcing, T::one());
-        self.particles.mass = mass;
-        eigenvalue
-    }
-
-    /// Largest eigenvalue of the map, `None` if it is nothing to a wave of the given `speed`; velocities and
-    /// DOFs are used up.
-    #[inline(never)]
-    fn largest_eigenvalue(&mut self, forcing: &Forcing<T, D>, speed: T) -> Option<T> {
-        let across = speed / self.grid.cell_size().min();
-        let least = across * across * T::lit(ROUND_OFF);
-        let probe = self;
-        probe.prepare();
-        probe.sum_solid_masses();
-        let rest = at_rest(forcing);
-        let h = probe.grid.cell_size().min();
-        let scale = h.is_finite().then(|| h * T::lit(PROBE_STRAIN))?;
-        excite(&mut probe.particles.velocity);
-        let (mut before, mut eigenvalue) = (T::zero(), T::zero());
-        for iteration in 0..MOST_ITERATIONS {
-            normalise(&mut probe.particles.velocity, scale)?;
-            eigenvalue = probe.apply(&rest, scale)?;
-            if iteration % STRIDE == STRIDE - 1 {
-                if (eigenvalue - before).abs() <= T::lit(TOLERANCE) * eigenvalue {
-                    break;
-                }
-                before = eigenvalue;
-            }
-        }
-        (eigenvalue > least).then_some(eigenvalue)
-    }
-
-    /// Replaces the velocities `v` by `G v` and returns `|G v| / |v|`, `|v| = size`.
-    fn apply(&mut self, rest: &Forcing<T, D>, size: T) -> Option<T> {
-        self.map_solid();
-        let walls = Walls::of_solid(&self.face_dofs, rest);
-        divide_by_mass(&mut self.dofs, self.mass, &walls, true);
-        let space = (&self.basis, &self.grid, self.bins.cells());
-        let rates = stress_rates(space, &self.waves(), &self.dofs.velocity);
-        let batched = self.batched();
-        let fitted = Fitted {
-            basis: &self.basis,
-            cloud: cloud(&self.grid, &self.bins, &self.particles, &self.cuts),
-            domains: self.particles.domains.views(),
-            reconstruction: &mut self.reconstruction,
-            spans: &mut self.spans,
-            batched,
-        };
-        let force = Targets::<T, D, 0, 0, 1>::of_forces([&mut self.dofs.force]);
-        fitted.forces::<1>(Stresses(&rates), force);
-        let walls = Walls::of_solid(&self.face_dofs, rest);
-        accelerate(&mut self.dofs, self.mass, &walls, &mut self.balance);
-        self.particles.velocity.fill(SVector::zeros());
-        self.kick_phases::<1, 0>(-T::one());
-        let eigenvalue = rms(&self.particles.velocity) / size;
-        eigenvalue.is_finite().then_some(eigenvalue)
+        let given = self.inner.sampled()?;
+        let (basis, reconstruction) = (self.basis.clone(), self.reconstruction.clone());
+        Self::of_parts(basis, reconstruction, self.velocity_mass, given).ok()
     }
 }
 
-impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
 where
     T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
     X: Transfer<T, D>,
 {
+    /// Change of the particles' total stress under the velocities of the DOFs in one second.
+    pub(super) fn stress_rates<B: BasisFamily<T, D>>(&self, basis: &B) -> Vec<SMatrix<T, D, D>> {
+        let space = (basis, &self.grid, self.bins.cells());
+        stress_rates(space, &self.waves(), &self.dofs.velocity)
+    }
+
     /// The particles with what they are made of.
     pub(super) fn waves(&self) -> Waves<'_, T, D, L, P> {
         Waves {
@@ -242,6 +151,162 @@ where
             particles: &self.particles,
         }
     }
+}
+
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D> + Clone,
+    P: Phase<T, D> + Clone,
+    X: Transfer<T, D>,
+{
+    /// What a stepper of the particles about a corner is made of.
+    #[inline(never)]
+    fn sampled(&self) -> Option<Given<T, D, L, P, X>> {
+        let (numbers, surface) = about_corner(self.bins.cells(), &self.surface)?;
+        Some(Given {
+            grid: self.grid.clone(),
+            law: self.law.clone(),
+            phase: self.phase.clone(),
+            transfer: self.transfer.clone(),
+            particles: self.particles.picked(&numbers, self.law.numbers()),
+            memory: Vec::new(),
+            surface,
+        })
+    }
+}
+
+/// Any stepper.
+type Any<'s, T, const D: usize, L, P, X> = &'s mut dyn Sweeps<T, D, L, P, X>;
+
+/// See [`Stepper::critical_step`]; velocities and DOFs are used up.
+#[inline(never)]
+pub(super) fn critical_step<T, const D: usize, L, P, X>(
+    stepper: Any<'_, T, D, L, P, X>,
+    forcing: &Forcing<T, D>,
+) -> Option<CriticalStep<T>>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    if const { X::FROM_GRID } {
+        return None;
+    }
+    if const { P::FLOWS } {
+        let geometry = eigenvalue_of_unit_density(stepper, forcing)?;
+        return stepper.inner().waves().critical_step_of_both(geometry);
+    }
+    let diffusion = match const { P::DIFFUSES } {
+        true => critical_diffusion(stepper),
+        false => None,
+    };
+    let speed = stepper.inner().waves().largest_speed();
+    let wave = largest_eigenvalue(stepper, forcing, speed).map(|eigenvalue| CriticalStep {
+        step: T::lit(2.0) / eigenvalue.sqrt(),
+        mechanism: Mechanism::Wave,
+    });
+    [wave, diffusion].into_iter().flatten().reduce(smaller)
+}
+
+/// Largest eigenvalue for waves of 1 m/s; velocities and DOFs are used up.
+#[inline(never)]
+fn stiffness_of<T, const D: usize, L, P, X>(
+    stepper: Any<'_, T, D, L, P, X>,
+    forcing: &Forcing<T, D>,
+) -> Option<T>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    if const { P::FLOWS } {
+        return eigenvalue_of_unit_density(stepper, forcing);
+    }
+    let speed = stepper.inner().waves().largest_speed();
+    Some(largest_eigenvalue(stepper, forcing, speed)? / (speed * speed))
+}
+
+/// Largest eigenvalue for unit density and modulus; velocities and DOFs are used up.
+fn eigenvalue_of_unit_density<T, const D: usize, L, P, X>(
+    stepper: Any<'_, T, D, L, P, X>,
+    forcing: &Forcing<T, D>,
+) -> Option<T>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    let particles = &mut stepper.inner().particles;
+    let unit_density = particles.volume.clone();
+    let mass = std::mem::replace(&mut particles.mass, unit_density);
+    let eigenvalue = largest_eigenvalue(stepper, forcing, T::one());
+    stepper.inner().particles.mass = mass;
+    eigenvalue
+}
+
+/// Largest eigenvalue of the map, `None` if it is nothing to a wave of the given `speed`; velocities and DOFs
+/// are used up.
+fn largest_eigenvalue<T, const D: usize, L, P, X>(
+    stepper: Any<'_, T, D, L, P, X>,
+    forcing: &Forcing<T, D>,
+    speed: T,
+) -> Option<T>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    let h = stepper.inner().grid.cell_size().min();
+    let across = speed / h;
+    let least = across * across * T::lit(ROUND_OFF);
+    stepper.prepare();
+    stepper.sum_solid_masses();
+    let rest = at_rest(forcing);
+    let scale = h.is_finite().then(|| h * T::lit(PROBE_STRAIN))?;
+    excite(&mut stepper.inner().particles.velocity);
+    let (mut before, mut eigenvalue) = (T::zero(), T::zero());
+    for iteration in 0..MOST_ITERATIONS {
+        normalise(&mut stepper.inner().particles.velocity, scale)?;
+        eigenvalue = apply(stepper, &rest, scale)?;
+        if iteration % STRIDE == STRIDE - 1 {
+            if (eigenvalue - before).abs() <= T::lit(TOLERANCE) * eigenvalue {
+                break;
+            }
+            before = eigenvalue;
+        }
+    }
+    (eigenvalue > least).then_some(eigenvalue)
+}
+
+/// Replaces the velocities `v` by `G v` and returns `|G v| / |v|`, `|v| = size`.
+fn apply<T, const D: usize, L, P, X>(
+    stepper: Any<'_, T, D, L, P, X>,
+    rest: &Forcing<T, D>,
+    size: T,
+) -> Option<T>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    stepper.map_solid();
+    let inner = stepper.inner();
+    let walls = Walls::of_solid(&inner.face_dofs, rest);
+    divide_by_mass(&mut inner.dofs, inner.mass, &walls, true);
+    stepper.map_stress_rates();
+    let inner = stepper.inner();
+    let walls = Walls::of_solid(&inner.face_dofs, rest);
+    accelerate(&mut inner.dofs, inner.mass, &walls, &mut inner.balance);
+    inner.particles.velocity.fill(SVector::zeros());
+    stepper.kick_solid(-T::one());
+    let eigenvalue = rms(&stepper.inner().particles.velocity) / size;
+    eigenvalue.is_finite().then_some(eigenvalue)
 }
 
 /// The particles about a corner, and what of the surface is theirs.

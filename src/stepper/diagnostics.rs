@@ -6,6 +6,7 @@ use nalgebra::SVector;
 
 use super::Stepper;
 use super::contact::WallAction;
+use super::inner::Inner;
 use super::spans::Totals;
 use crate::basis::BasisFamily;
 use crate::field::MassMomentum;
@@ -185,11 +186,19 @@ where
     /// step earlier than the strain energy. [`Stepper::step_and_measure`] has both at one time.
     pub fn energy(&self) -> Energy<T> {
         Energy {
-            kinetic: kinetic_energy(&self.phase, &self.particles),
-            strain: self.strain_energy(),
+            kinetic: kinetic_energy(&self.inner.phase, &self.inner.particles),
+            strain: self.inner.strain_energy(),
         }
     }
+}
 
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
     /// Strain energy of the particles as they are, what a phase stores included.
     pub(super) fn strain_energy(&self) -> T {
         strain_energy(&self.law, &self.phase, &self.particles)

@@ -13,10 +13,12 @@
 //!
 //! `docs/theory/diffusion.md` proves what is conserved and the bound of the step.
 
+use super::inner::Inner;
 use super::spans::{Fault, InvalidState, Moved, share};
 use super::sums::windows;
+use super::sweeps::Sweeps;
 use super::waves::smaller;
-use super::{CriticalStep, DiffusionCondition, Forcing, Mechanism, Stepper};
+use super::{CriticalStep, DiffusionCondition, Forcing, Mechanism};
 use crate::basis::BasisFamily;
 use crate::error::{SetupError, StepError};
 use crate::grid::Face;
@@ -24,7 +26,6 @@ use crate::law::LawSweep;
 use crate::parallel::{PARTICLES, PerSpan, Windows, add_up, each_span, worth_sharing};
 use crate::particles::Particles;
 use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::simd::{Packs, each, in_lanes};
 use crate::transfer::{Contribution, Group, Parts, ScalarField, Sites, Transfer, for_values, g2p, p2g};
@@ -264,31 +265,34 @@ where
     }
 }
 
-impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
 where
     T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
     X: Transfer<T, D>,
 {
     /// The stage: values of the particles one step later.
-    pub(super) fn diffuse(&mut self, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
+    pub(super) fn diffuse<B: BasisFamily<T, D>>(
+        &mut self,
+        basis: &B,
+        dt: T,
+        forcing: &Forcing<T, D>,
+    ) -> Result<(), StepError> {
         if const { !P::DIFFUSES } {
             return Ok(());
         }
-        self.map_contents();
+        self.map_contents(basis);
         self.diffusion.divide_contents();
         self.each_prescribed(forcing, |diffusion, dofs, told| {
             diffusion.prescribe_values(dofs, told);
         });
-        self.map_fluxes();
+        self.map_fluxes(basis);
         self.diffusion.divide_rates();
         self.each_prescribed(forcing, |diffusion, dofs, told| {
             diffusion.prescribe_rates(dofs, told, dt);
         });
-        self.take_in(dt);
+        self.take_in(basis, dt);
         self.find_fault()
     }
 
@@ -303,8 +307,8 @@ where
 
     /// P2G of capacities and contents.
     #[inline(never)]
-    fn map_contents(&mut self) {
-        let (basis, grid, phase, particles) = (&self.basis, &self.grid, &self.phase, &self.particles);
+    fn map_contents<B: BasisFamily<T, D>>(&mut self, basis: &B) {
+        let (basis, grid, phase, particles) = (basis, &self.grid, &self.phase, &self.particles);
         let (spans, store) = (&self.spans.particles[..], &mut self.spans.store);
         let (span, parallel) = share::<D>(spans, particles.position.len(), self.spans.lengths[0]);
         let Diffusion {
@@ -343,8 +347,8 @@ where
 
     /// G2P of gradients and P2G of fluxes.
     #[inline(never)]
-    fn map_fluxes(&mut self) {
-        let (basis, grid, phase, particles) = (&self.basis, &self.grid, &self.phase, &self.particles);
+    fn map_fluxes<B: BasisFamily<T, D>>(&mut self, basis: &B) {
+        let (basis, grid, phase, particles) = (basis, &self.grid, &self.phase, &self.particles);
         let (spans, store) = (&self.spans.particles[..], &mut self.spans.store.scalars[0]);
         let (span, parallel) = share::<D>(spans, particles.position.len(), self.spans.lengths[0]);
         let Diffusion { values, rates, .. } = &mut self.diffusion;
@@ -370,8 +374,8 @@ where
 
     /// G2P of rates.
     #[inline(never)]
-    fn take_in(&mut self, dt: T) {
-        let (basis, grid, phase, rates) = (&self.basis, &self.grid, &self.phase, &self.diffusion.rates[..]);
+    fn take_in<B: BasisFamily<T, D>>(&mut self, basis: &B, dt: T) {
+        let (basis, grid, phase, rates) = (basis, &self.grid, &self.phase, &self.diffusion.rates[..]);
         let particles = &mut self.particles;
         let parallel = worth_sharing::<D>(particles.position.len(), PARTICLES);
         let work = (
@@ -416,28 +420,10 @@ where
         }
     }
 
-    /// Bound (1/m2) of the largest eigenvalue for a diffusivity of 1 m2/s, of particles in their cells
-    /// ([`Stepper::prepare`]).
-    pub(super) fn diffusion_geometry(&self) -> T {
-        let held = vec![false; self.diffusion.capacities.len()];
-        let capacities: Vec<T> = (0..self.particles.len()).map(|p| self.capacity(p)).collect();
-        self.largest_ratio(&held, [&capacities; 2])
-    }
-
     /// The largest stable step with a bound of that; `None` if nothing diffuses.
     pub(super) fn diffusion_limit(&self, geometry: T) -> Option<CriticalStep<T>> {
         let limits = (0..self.particles.len()).map(|p| limit(self.diffusivity(p) * geometry));
         limits.flatten().reduce(smaller)
-    }
-
-    /// The largest stable step by the bound with the diffusivity of every particle.
-    pub(super) fn critical_diffusion(&mut self) -> Option<CriticalStep<T>> {
-        self.prepare();
-        let held = vec![false; self.diffusion.capacities.len()];
-        let particles = 0..self.particles.len();
-        let capacities: Vec<T> = particles.clone().map(|p| self.capacity(p)).collect();
-        let conductances: Vec<T> = particles.map(|p| capacities[p] * self.diffusivity(p)).collect();
-        limit(self.largest_ratio(&held, [&capacities, &conductances]))
     }
 
     fn capacity(&self, p: usize) -> T {
@@ -451,6 +437,40 @@ where
         self.phase
             .diffusivity(particles.mass[p], particles.volume[p], &particles.phase[p])
     }
+}
+
+/// Bound (1/m2) of the largest eigenvalue for a diffusivity of 1 m2/s, of particles in their cells
+/// ([`Sweeps::prepare`]).
+pub(super) fn diffusion_geometry<T, const D: usize, L, P, X>(stepper: &mut dyn Sweeps<T, D, L, P, X>) -> T
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    let inner = stepper.inner();
+    let held = vec![false; inner.diffusion.capacities.len()];
+    let capacities: Vec<T> = (0..inner.particles.len()).map(|p| inner.capacity(p)).collect();
+    stepper.largest_ratio(&held, Some([&capacities; 2]))
+}
+
+/// The largest stable step by the bound with the diffusivity of every particle.
+pub(super) fn critical_diffusion<T, const D: usize, L, P, X>(
+    stepper: &mut dyn Sweeps<T, D, L, P, X>,
+) -> Option<CriticalStep<T>>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    stepper.prepare();
+    let inner = stepper.inner();
+    let held = vec![false; inner.diffusion.capacities.len()];
+    let particles = 0..inner.particles.len();
+    let capacities: Vec<T> = particles.clone().map(|p| inner.capacity(p)).collect();
+    let conductances: Vec<T> = particles.map(|p| capacities[p] * inner.diffusivity(p)).collect();
+    limit(stepper.largest_ratio(&held, Some([&capacities, &conductances])))
 }
 
 /// Twice one over an eigenvalue (1/s).

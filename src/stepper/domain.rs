@@ -1,6 +1,6 @@
 //! Domains of particles: what the basis asks for, from the layout at the start.
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 use super::contact::shapes;
 use crate::basis::{BasisFamily, Domain};
@@ -18,21 +18,33 @@ pub(super) fn lay<T: Scalar, const D: usize, B: BasisFamily<T, D>, S, P>(
     grid: &Grid<T, D>,
     particles: &mut Particles<T, D, S, P>,
 ) {
-    if !B::DOMAIN.is_asked_for() || particles.domains != Domains::none() {
-        return;
+    if const { B::DOMAIN.is_asked_for() } && particles.domains == Domains::none() {
+        particles.domains = boxes(B::DOMAIN, grid, &particles.initial_position, &particles.volume);
     }
-    let shapes = shapes(grid, &particles.initial_position).into_iter();
-    let half_lengths = shapes.zip(&particles.volume).map(|(shape, volume)| {
+}
+
+/// Boxes of these volumes: compiled for no basis.
+#[inline(never)]
+fn boxes<T: Scalar, const D: usize>(
+    kind: Domain,
+    grid: &Grid<T, D>,
+    initial: &[SVector<T, D>],
+    volumes: &[T],
+) -> Domains<T, D> {
+    let shapes = shapes(grid, initial).into_iter();
+    let half_lengths = shapes.zip(volumes).map(|(shape, volume)| {
         let root = volume.powf(T::one() / T::count(D));
         shape * (root / T::lit(2.0))
     });
-    match B::DOMAIN {
+    let mut domains = Domains::none();
+    match kind {
         Domain::Edges => {
             let edges = half_lengths.map(|half| SMatrix::from_diagonal(&half));
-            particles.domains.half_edges = edges.collect();
+            domains.half_edges = edges.collect();
         }
-        _ => particles.domains.half_lengths = half_lengths.collect(),
+        _ => domains.half_lengths = half_lengths.collect(),
     }
+    domains
 }
 
 /// Checks that particles have the domains that the basis asks for, and no others.

@@ -15,14 +15,14 @@ pub(super) fn face_dofs<T: Scalar, const D: usize, B: BasisFamily<T, D>>(
     basis: &B,
     grid: &Grid<T, D>,
 ) -> (Vec<Vec<u32>>, Vec<Option<usize>>) {
-    Face::all::<D>()
-        .map(|face| {
-            let mut held = Vec::new();
-            basis.for_each_on_face(grid, face, |dof| held.push(dof as u32));
-            let left_out = left_out(basis, grid, face, &held);
-            (held, left_out)
-        })
-        .unzip()
+    let (mut all, mut all_left_out) = (Vec::with_capacity(2 * D), Vec::with_capacity(2 * D));
+    for face in Face::all::<D>() {
+        let mut held = Vec::new();
+        basis.for_each_on_face(grid, face, |dof| held.push(dof as u32));
+        all_left_out.push(left_out(basis, grid, face, &held));
+        all.push(held);
+    }
+    (all, all_left_out)
 }
 
 /// A DOF that has a value in the middle of a cell's part of the face, and is not held there.

@@ -5,7 +5,7 @@
 
 use nalgebra::SMatrix;
 
-use super::Dofs;
+use super::dofs::Dofs;
 use super::liquid::UniformLoad;
 use super::matrix::MassMatrix;
 use super::spans::{Spans, share};

@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use super::ghost::lump_undetermined_cells;
+use super::inner::Inner;
 use super::matrix::MassMatrix;
 use super::pairs::Pairs;
 use super::{FaceCondition, Forcing, Stepper};
@@ -41,27 +42,48 @@ where
     }
 
     pub(super) fn assemble_particle_matrix(&mut self) {
-        let bodies = self.particles.sites(self.bins.cells());
-        let (masses, matrix) = (&self.particles.mass[..], &mut self.dofs.matrix);
-        fill_with_pairs(&self.basis, &self.grid, bodies, masses, &mut self.pairs, matrix);
+        let bodies = self.inner.particles.sites(self.inner.bins.cells());
+        let (masses, matrix) = (&self.inner.particles.mass[..], &mut self.inner.dofs.matrix);
+        fill_with_pairs(
+            &self.basis,
+            &self.inner.grid,
+            bodies,
+            masses,
+            &mut self.inner.pairs,
+            matrix,
+        );
         if const { R::Mass::SERIES } {
-            if D > 1 {
-                let space = (&self.basis, &self.grid, &self.bins);
-                let deflation = &mut self.dofs.series.deflation;
-                deflation.find_bodies(space, &self.places, &self.dofs.mass);
+            if const { D > 1 } {
+                let Inner {
+                    grid,
+                    bins,
+                    dofs,
+                    places,
+                    ..
+                } = &mut self.inner;
+                let space = (&self.basis, &*grid, &*bins);
+                dofs.series.deflation.find_bodies(space, places, &dofs.mass);
             }
             return;
         }
-        if D > 1 {
+        if const { D > 1 } {
             self.tie_partly_filled_cells();
         }
-        let space = (&self.basis, &self.grid, &self.bins);
-        lump_undetermined_cells(space, &self.reconstruction, &mut self.dofs.matrix);
-        self.dofs.matrix.complete(Some(T::lit(WEAK)));
+        let space = (&self.basis, &self.inner.grid, &self.inner.bins);
+        lump_undetermined_cells(space, &self.reconstruction, &mut self.inner.dofs.matrix);
+        self.inner.dofs.matrix.complete(Some(T::lit(WEAK)));
     }
+}
 
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
     /// Adds the tractions of faces to the forces.
-    pub(super) fn add_tractions(&mut self, forcing: &Forcing<T, D>) {
+    pub(super) fn add_tractions<B: BasisFamily<T, D>>(&mut self, basis: &B, forcing: &Forcing<T, D>) {
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
             let FaceCondition::Traction(traction) = forcing.face(point.face) else {
@@ -70,15 +92,10 @@ where
             if !point.loaded {
                 continue;
             }
-            let (cell, x) = self.loaded_place(point);
+            let (cell, x) = self.loaded_place(basis, point);
             let load = traction * point.area;
             self.balance.load += load;
-            add_load(
-                (&self.basis, &self.grid),
-                (&cell, &x),
-                &load,
-                &mut self.dofs.force,
-            );
+            add_load((basis, &self.grid), (&cell, &x), &load, &mut self.dofs.force);
         }
     }
 }

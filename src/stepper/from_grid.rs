@@ -10,6 +10,7 @@ use super::acceleration::Walls;
 use super::balance::Balance;
 use super::dofs::Dofs;
 use super::forcing::Forcing;
+use super::inner::{Inner, Kind};
 use super::spans::{Spans, Totals, share};
 use super::sums::{InSpan, Targets};
 use super::velocity::divide;
@@ -18,10 +19,10 @@ use crate::basis::BasisFamily;
 use crate::error::{SetupError, StepError};
 use crate::grid::{Face, Grid};
 use crate::law::LawSweep;
-use crate::mass::MassModel;
+use crate::mass::Divisor;
 use crate::parallel::{PARTICLES, PerSpan, each_span, worth_sharing};
 use crate::phase::Phase;
-use crate::reconstruction::{Filters, Reconstruction};
+use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::simd::{Packs, each};
 use crate::transfer::{
@@ -41,18 +42,26 @@ where
     /// Velocities of the DOFs from those of the particles, kicked by the accelerations. Compares what was
     /// mapped with what the particles have.
     pub(super) fn map_and_kick_dofs(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        let before = self.momentum_before();
+        let before = self.inner.momentum_before();
         if const { X::AFFINE } {
-            self.sum_affine_momenta();
+            self.inner.sum_affine_momenta(&self.basis);
         } else {
             self.map_solid();
         }
-        let mapped = self.mapped_totals();
-        self.record(&before, mapped);
-        let walls = Walls::of_solid(&self.face_dofs, forcing);
-        kick_dofs(&mut self.dofs, dt, &walls, &mut self.balance);
+        let mapped = self.inner.mapped_totals();
+        self.inner.record(&before, mapped);
+        let walls = Walls::of_solid(&self.inner.face_dofs, forcing);
+        kick_dofs(&mut self.inner.dofs, dt, &walls, &mut self.inner.balance);
     }
+}
 
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
     /// Momentum of the particles before they take another, span by span as it will be summed again.
     fn momentum_before(&mut self) -> Totals<T, D> {
         let (velocities, masses) = (&self.particles.velocity[..], &self.particles.mass[..]);
@@ -72,7 +81,7 @@ where
 
     /// Momenta of the DOFs from velocities that are linear functions about each particle.
     #[inline(never)]
-    fn sum_affine_momenta(&mut self) {
+    fn sum_affine_momenta<B: BasisFamily<T, D>>(&mut self, basis: &B) {
         let Spans {
             particles: windows,
             lengths,
@@ -82,7 +91,7 @@ where
         let particles = &self.particles;
         let mut momenta = Targets::<'_, T, D, 0, 1, 0>::of_momenta([&mut self.dofs.velocity[..]]);
         let (span, parallel) = share::<D>(windows, particles.len(), lengths[0]);
-        let (basis, grid, transfer, places) = (&self.basis, &self.grid, &self.transfer, &self.places);
+        let (basis, grid, transfer, places) = (basis, &self.grid, &self.transfer, &self.places);
         let work = (
             particles.sites(self.bins.cells()),
             (&particles.mass[..], &particles.velocity[..], &self.memory[..]),
@@ -111,12 +120,12 @@ where
 
     /// Lets the particles take their velocities from the DOFs; returns their totals then.
     #[inline(never)]
-    pub(super) fn take_from_grid(&mut self, dt: T) -> Totals<T, D> {
+    pub(super) fn take_from_grid<B: BasisFamily<T, D>>(&mut self, basis: &B, dt: T) -> Totals<T, D> {
         let particles = &mut self.particles;
         let parallel = worth_sharing::<D>(particles.position.len(), PARTICLES);
         let totals = &mut self.spans.totals;
         totals.fill(Totals::zero());
-        let (basis, grid, transfer, places) = (&self.basis, &self.grid, &self.transfer, &self.places);
+        let (basis, grid, transfer, places) = (basis, &self.grid, &self.transfer, &self.places);
         let fields = [&self.dofs.velocity[..], &self.dofs.force[..]];
         let work = (
             Sites {
@@ -344,20 +353,20 @@ fn tensor_lanes<T: Scalar, K: Packs<T, N>, const N: usize, const D: usize>(
 }
 
 /// Places of the DOFs, where the transfer or the mass asks for them.
-pub(super) fn dof_places<T, const D: usize, B, M, X>(
+pub(super) fn dof_places<T, const D: usize, B, X>(
     basis: &B,
     grid: &Grid<T, D>,
+    mass: Divisor,
 ) -> Result<DofPlaces<T, D>, SetupError>
 where
     T: Scalar,
     B: BasisFamily<T, D>,
-    M: MassModel,
     X: Transfer<T, D>,
 {
     let reason = "a basis that is a product along the axes and reproduces linear functions";
     if const { X::FROM_GRID } {
         DofPlaces::of(basis, grid).ok_or(SetupError::FromGrid { reason })
-    } else if const { M::SERIES && D > 1 } {
+    } else if const { D > 1 } && mass.is_series() {
         DofPlaces::of(basis, grid).ok_or(SetupError::NoPlaces)
     } else {
         Ok(DofPlaces::none())
@@ -365,18 +374,17 @@ where
 }
 
 /// Refuses what a transfer from the grid does not serve.
-pub(super) fn refuse_what_it_cannot<T, const D: usize, R, P, X>() -> Result<(), SetupError>
+pub(super) fn refuse_what_it_cannot<T, const D: usize, P, X>(kind: Kind) -> Result<(), SetupError>
 where
     T: Scalar,
-    R: Reconstruction<T, D>,
     P: Phase<T, D>,
     X: Transfer<T, D>,
 {
     let reason = if P::FLOWS {
         "one phase: a liquid that flows has velocities of its own"
-    } else if R::Filter::FILTERS || R::Mass::IN_ACCELERATION {
+    } else if kind.filters || kind.mass.is_in_acceleration() {
         "lumped masses and a velocity that nothing relaxes"
-    } else if !R::Mass::OF_PARTICLES {
+    } else if kind.mass != Divisor::Particles {
         "masses that are sums over the particles: these would not take back what a fit changed"
     } else {
         return Ok(());

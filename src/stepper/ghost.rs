@@ -28,9 +28,9 @@ where
     /// Puts a penalty on the jumps across those faces between occupied cells at which one of them is not
     /// full, beyond one dimension.
     pub(super) fn tie_partly_filled_cells(&mut self) {
-        let (grid, bins, reconstruction) = (&self.grid, &self.bins, &self.reconstruction);
+        let (grid, bins, reconstruction) = (&self.inner.grid, &self.inner.bins, &self.reconstruction);
         let is_full = |place: usize| R::Filter::filling(reconstruction, place) == Filling::Filled;
-        let full_mass = |place: usize| density(&self.particles, bins, place) * grid.cell_volume();
+        let full_mass = |place: usize| density(&self.inner.particles, bins, place) * grid.cell_volume();
         let share = share::<T, D>(self.basis.degree());
         for place in 0..bins.occupied().len() {
             let own_is_full = is_full(place);
@@ -39,7 +39,7 @@ where
                     let cell = grid.cell(bins.occupied()[place] as usize);
                     // The lighter of two bodies must not be tied as if it were the heavier.
                     let mass = full_mass(place).min(full_mass(other)) * share;
-                    self.dofs.matrix.tie(grid, &cell, axis, mass);
+                    self.inner.dofs.matrix.tie(grid, &cell, axis, mass);
                 }
             });
         }

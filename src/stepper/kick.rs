@@ -55,7 +55,7 @@ impl<T: Scalar, const D: usize, P: Phase<T, D>, const C: usize> Kick<T, D, C> fo
         for c in 0..D {
             momenta[0][c] = after[c] * mass;
         }
-        if C > 1 {
+        if const { C > 1 } {
             momenta[C - 1] = self.kick_liquid(k, group, &accelerations[C - 1]);
         }
         momenta
@@ -205,7 +205,7 @@ where
         total.liquid_mass = kicked.liquid_mass;
         found.set(total);
     });
-    if M > 0 {
+    if const { M > 0 } {
         store.add_up(windows, &mut momenta);
     }
     spans.total()

@@ -32,7 +32,7 @@ where
 {
     /// What the law knows of the particles besides their stress.
     pub fn material_fields(&self) -> MaterialFields {
-        known_to(&self.law, &self.particles, &self.order)
+        known_to(&self.inner.law, &self.inner.particles, &self.inner.order)
     }
 }
 

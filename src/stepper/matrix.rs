@@ -45,7 +45,7 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
     #[inline(never)]
     pub(super) fn new<B: BasisFamily<T, D>>(basis: &B, grid: &Grid<T, D>, ties: bool) -> Self {
         let none = Self::none();
-        if D == 1 {
+        if const { D == 1 } {
             let band = Banded::zeros(basis.dof_count(grid), basis.half_band(grid));
             Self {
                 factor: band.clone(),
@@ -92,7 +92,7 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
     /// Adds to the entry `(i, j)` of the lower half; the upper one, `i < j`, is the same and left out.
     #[inline(always)]
     pub(super) fn add(&mut self, i: usize, j: usize, value: T) {
-        if D == 1 {
+        if const { D == 1 } {
             self.band.add(i, j, value);
         } else if j <= i {
             self.lattice.add(i, j, value);
@@ -106,7 +106,7 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
 
     /// Lumps the row of a DOF.
     pub(super) fn lump(&mut self, dof: usize) {
-        if D == 1 {
+        if const { D == 1 } {
             self.band.lump(dof);
         } else {
             self.lattice.lump(dof);
@@ -117,7 +117,7 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
     /// their sum are lumped, if told so.
     #[inline(never)]
     pub(super) fn complete(&mut self, weak: Option<T>) {
-        if D > 1 {
+        if const { D > 1 } {
             self.gradients.prepare(&self.lattice, &self.penalty);
         } else if let Some(least) = weak {
             self.band.lump_weak(least);
@@ -144,7 +144,7 @@ impl<T: Scalar, const D: usize> MassMatrix<T, D> {
 
     /// Sum of all entries.
     pub(super) fn total(&self) -> T {
-        if D == 1 {
+        if const { D == 1 } {
             self.band.total()
         } else {
             self.gradients.total()
@@ -168,7 +168,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
         if let Divisor::ParticleSeries(terms) = mass {
             return self.sum_series(unknown, terms, walls, pick);
         }
-        if D > 1 {
+        if const { D > 1 } {
             return self.iterate(unknown, mass, walls, pick);
         }
         let right = match unknown {

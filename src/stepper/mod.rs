@@ -45,6 +45,7 @@ mod forces;
 mod forcing;
 mod from_grid;
 mod ghost;
+mod inner;
 mod kick;
 mod liquid;
 mod material_fields;
@@ -61,6 +62,7 @@ mod spans;
 mod stages;
 mod step;
 mod sums;
+mod sweeps;
 mod velocity;
 mod waves;
 mod window;
@@ -73,84 +75,59 @@ pub use material_fields::MaterialFields;
 pub use setup::Setup;
 pub use simulation::Simulation;
 
-use nalgebra::{SMatrix, SVector};
+use std::fmt;
+
+use nalgebra::SVector;
 
 use crate::basis::{BasisFamily, FixedPoints};
 use crate::error::{SetupError, StepError};
-use crate::grid::{Cell, Grid};
+use crate::grid::Grid;
 use crate::law::LawSweep;
-use crate::mass::{Divides, Divisor, MassModel};
-use crate::parallel::{CELLS, PARTICLES, are_many, within_pool};
+use crate::mass::{Divides, MassModel};
 use crate::particles::{Bins, Outside, Particles};
 use crate::phase::Phase;
-use crate::reconstruction::{Cloud, CourantNumbers, Cut, Filters, Reconstruction, Streams};
+use crate::reconstruction::{Cloud, Cut, Filters, Reconstruction, Streams};
 use crate::scalar::Scalar;
-use crate::simd::{LANES, packs_serve};
-use crate::transfer::{self, DofPlaces, Flip, Transfer};
-use dofs::Dofs;
-use order::Order;
-use pairs::Pairs;
-use spans::{SCALARS, Spans, VECTORS};
+use crate::simd::packs_serve;
+use crate::transfer::{self, Flip, Transfer};
+use inner::{Given, Inner, Kind};
+use step::send_step;
 
 /// Steps particles through time. See the [module](self) for the algorithm.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Stepper<T, const D: usize, B, R, L: LawSweep<T, D>, P: Phase<T, D>, X: Transfer<T, D> = Flip>
 where
     T: Scalar,
     R: Reconstruction<T, D>,
 {
-    grid: Grid<T, D>,
     basis: B,
     reconstruction: R,
-    law: L,
-    phase: P,
-    transfer: X,
-    particles: Particles<T, D, L::Number, P::Particle>,
-    /// What the transfer remembers of each particle.
-    memory: Vec<X::Particle>,
-    surface: Vec<SurfacePoint<T>>,
-    bins: Bins<D>,
-    order: Order,
-    /// Where the surfaces cut cells.
-    cuts: Vec<Cut<T>>,
-    /// The solid's DOFs; in one phase the only ones.
-    dofs: Dofs<T, D>,
-    /// The liquid's, empty where none flows.
-    liquid: Dofs<T, D>,
-    /// Drag of the DOFs (kg/s in 3-D), empty where no liquid flows.
-    drag: Vec<T>,
-    /// What diffuses, of no DOF where nothing does.
-    diffusion: diffusion::Diffusion<T>,
-    /// Of no DOF but for a liquid that flows with the particles' consistent matrices.
-    joint: liquid::Joint<T, D>,
-    /// What surfaces demand that the liquid does not pass.
-    seal: liquid::Seal<T>,
-    /// Where DOFs lie; of none but for a transfer from the grid.
-    places: DofPlaces<T, D>,
-    spans: Spans<T, D>,
-    /// Whether a particle came near the border of the grid's window.
-    strayed: bool,
-    /// Part of each occupied cell that a wave crosses in this step; empty where nothing relaxes.
-    crossed: Vec<CourantNumbers<T>>,
-    /// Stresses as the relaxation would have them; empty but for laws that remember.
-    relaxed: Vec<SMatrix<T, D, D>>,
-    balance: balance::Balance<T, D>,
-    /// Contact with walls that rub.
-    contact: contact::WallContact<T, D>,
-    /// What the particles of a cell add to their matrix.
-    pairs: Pairs<T, D>,
-    /// Force per mass of each particle; empty where there is none but the uniform one.
-    body_forces: Vec<SVector<T, D>>,
-    /// DOFs of each face, in the order of [`Face::all`].
-    face_dofs: Vec<Vec<u32>>,
-    /// Of each a DOF that has a value there and is not among them.
-    left_out: Vec<Option<usize>>,
     /// As the setup said it.
     velocity_mass: R::Mass,
-    mass: Divisor,
-    time: T,
-    steps: usize,
-    diagnostics: Diagnostics<T>,
+    /// All else, of which most stages are.
+    inner: Inner<T, D, L, P, X>,
+}
+
+impl<T, const D: usize, B, R, L, P, X> fmt::Debug for Stepper<T, D, B, R, L, P, X>
+where
+    T: Scalar,
+    B: fmt::Debug,
+    R: Reconstruction<T, D> + fmt::Debug,
+    L: LawSweep<T, D> + fmt::Debug,
+    L::Number: fmt::Debug,
+    P: Phase<T, D> + fmt::Debug,
+    P::Particle: fmt::Debug,
+    X: Transfer<T, D> + fmt::Debug,
+    X::Particle: fmt::Debug,
+{
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Stepper")
+            .field("basis", &self.basis)
+            .field("reconstruction", &self.reconstruction)
+            .field("velocity_mass", &self.velocity_mass)
+            .field("inner", &self.inner)
+            .finish()
+    }
 }
 
 impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
@@ -169,16 +146,13 @@ where
     /// the grid or larger than the basis allows ([`Domain`](crate::basis::Domain)), a constant of the phase
     /// makes no sense, or beyond one axis the reconstruction is of one phase only or wants a basis that is
     /// one polynomial of its degree in each cell ([`ParticleMatrix`](crate::mass::ParticleMatrix)).
-    pub fn new(mut setup: Setup<T, D, B, R, L, P, X>) -> Result<Self, SetupError> {
+    pub fn new(setup: Setup<T, D, B, R, L, P, X>) -> Result<Self, SetupError> {
         const {
             crate::basis::constants_agree::<T, D, B>();
             crate::reconstruction::constants_agree::<T, D, R>();
             crate::phase::constants_agree::<T, D, P>();
             transfer::constants_agree::<T, D, X>();
         };
-        // While the setup is whole: what frees its parts one by one, where one of many tests fails, is else
-        // compiled for every stepper.
-        let (bins, places) = take_in(&mut setup)?;
         let Setup {
             grid,
             basis,
@@ -191,115 +165,59 @@ where
             memory,
             surface,
         } = setup;
-        let along = basis.degree() + 1;
-        let parts = Parts::new(
-            &grid,
-            bins,
-            &particles.mass,
-            Counts {
-                surface: surface.len(),
-                crossed: if R::Filter::FILTERS { grid.cell_count() } else { 0 },
-                relaxed: match R::Filter::FILTERS && law.remembers() {
-                    true => particles.len(),
-                    false => 0,
-                },
-                functions: [along, along.pow(D as u32 - 1)],
-                flows: P::FLOWS,
-                pairs: R::Mass::IN_ACCELERATION,
-            },
-        );
-        let mut stepper = Self {
+        let given = Given {
             grid,
-            basis,
-            reconstruction,
             law,
             phase,
             transfer,
             particles,
             memory,
             surface,
-            bins: parts.bins,
-            order: parts.order,
-            cuts: parts.cuts,
-            dofs: parts.dofs,
-            liquid: parts.liquid,
-            drag: Vec::new(),
-            diffusion: diffusion::Diffusion::none(),
-            joint: parts.joint,
-            seal: parts.seal,
-            places,
-            spans: parts.spans,
-            strayed: false,
-            crossed: parts.crossed,
-            relaxed: parts.relaxed,
-            balance: parts.balance,
-            contact: parts.contact,
-            pairs: parts.pairs,
-            body_forces: Vec::new(),
-            face_dofs: Vec::new(),
-            left_out: Vec::new(),
-            velocity_mass,
+        };
+        Self::of_parts(basis, reconstruction, velocity_mass, given)
+    }
+
+    /// The same of a setup taken apart.
+    fn of_parts(
+        basis: B,
+        reconstruction: R,
+        velocity_mass: R::Mass,
+        given: Given<T, D, L, P, X>,
+    ) -> Result<Self, SetupError> {
+        let kind = Kind {
             mass: velocity_mass.divisor(),
-            time: T::zero(),
-            steps: 0,
-            diagnostics: parts.diagnostics,
+            filters: R::Filter::FILTERS,
+        };
+        let mut stepper = Self {
+            inner: Inner::new(&basis, given, kind)?,
+            basis,
+            reconstruction,
+            velocity_mass,
         };
         if P::FLOWS {
             R::Filter::suit_liquid(&mut stepper.reconstruction);
         }
-        stepper.allocate_dofs();
+        stepper.inner.allocate_dofs(&stepper.basis);
         stepper.allocate();
         Ok(stepper)
-    }
-
-    /// Makes the DOFs of the grid's window.
-    fn allocate_dofs(&mut self) {
-        self.contact.forget();
-        let (basis, grid) = (&self.basis, &self.grid);
-        self.dofs = Dofs::new(basis, grid, self.mass);
-        if P::FLOWS {
-            self.liquid = Dofs::new(basis, grid, self.mass);
-            let count = basis.dof_count(grid);
-            self.drag = vec![T::zero(); count];
-            if R::Mass::IN_ACCELERATION {
-                self.joint = liquid::Joint::new(basis, grid, self.particles.len());
-            }
-        }
-        if X::FROM_GRID || (R::Mass::SERIES && D > 1) {
-            self.places.follow(basis, grid);
-        }
-        if P::DIFFUSES {
-            self.diffusion = diffusion::Diffusion::new(basis.dof_count(grid));
-        }
-        (self.face_dofs, self.left_out) = faces::face_dofs(basis, grid);
     }
 
     /// Lets reconstruction and basis see the particles and stream the widest values once, so that all they
     /// allocate is there before the first step: [`Stepper::bytes`] is right from the start.
     fn allocate(&mut self) {
         self.prepare();
-        let dofs = self.dofs.mass.len();
-        let each = match (P::FLOWS, P::DIFFUSES) {
-            (true, _) => [SCALARS, VECTORS],
-            (false, true) => [diffusion::SCALARS, 1],
-            (false, false) => [1, 1],
-        };
-        self.spans.allocate(each, R::Points::IN_CELLS, dofs);
-        if self.batched() {
-            let cells = self.particles.len().min(self.grid.cell_count());
-            let numbers = cells.div_ceil(LANES) * R::Points::KEPT;
-            self.spans.kept.reserve_exact(numbers);
-        }
+        let kept = if self.batched() { R::Points::KEPT } else { 0 };
+        self.inner.allocate_spans(R::Points::IN_CELLS, kept);
         if const { R::Mass::OF_PARTICLES } {
             return;
         }
         if const { P::FLOWS } {
             self.map_both_before(T::zero(), &Forcing::none());
-            self.liquid.velocity.fill(SVector::zeros());
+            self.inner.liquid.velocity.fill(SVector::zeros());
         } else {
             self.map_momenta();
         }
-        self.dofs.velocity.fill(SVector::zeros());
+        self.inner.dofs.velocity.fill(SVector::zeros());
     }
 
     /// One step of size `dt` (s) under `forcing`, the loads and boundary values of this step.
@@ -328,7 +246,7 @@ where
     /// # Errors
     /// Those of [`Stepper::step`]; the kick too must be positive and finite.
     pub fn step_with_kick(&mut self, kick: T, dt: T, forcing: &Forcing<T, D>) -> Result<(), StepError> {
-        self.send_step([kick, dt], forcing, false).map(|_| ())
+        send_step(self, [kick, dt], forcing, false).map(|_| ())
     }
 
     /// The same, and the energy at the step's start: see [`Energy`]. Takes memory for the velocities before
@@ -342,64 +260,40 @@ where
         dt: T,
         forcing: &Forcing<T, D>,
     ) -> Result<Energy<T>, StepError> {
-        self.send_step([kick, dt], forcing, true)
-    }
-
-    /// Takes a step in the pool of threads if it is worth that; the energy means nothing unless it is to be
-    /// measured.
-    fn send_step(
-        &mut self,
-        [kick, dt]: [T; 2],
-        forcing: &Forcing<T, D>,
-        measure: bool,
-    ) -> Result<Energy<T>, StepError> {
-        let kinds = [P::FLOWS, P::DIFFUSES, X::FROM_GRID];
-        refuse_bad_step([kick, dt], forcing, kinds, &self.left_out)?;
-        let mut outcome = Ok(Energy::none());
-        within_pool(self.is_worth_sending(), &mut || {
-            outcome = self.step_here([kick, dt], forcing, measure);
-        });
-        outcome
-    }
-
-    /// Whether a step is worth being sent to a pool of threads.
-    fn is_worth_sending(&self) -> bool {
-        let cells = match R::Points::AT_PARTICLES {
-            true => 0,
-            false => self.bins.occupied().len(),
-        };
-        are_many::<D>(self.particles.len(), PARTICLES) || are_many::<D>(cells, CELLS)
+        send_step(self, [kick, dt], forcing, true)
     }
 
     /// Takes in where the particles are.
     #[inline(never)]
     fn prepare(&mut self) {
-        self.spans.fresh = false;
-        if self.strayed {
-            self.follow_particles();
-        }
-        if self.order.is_lost() {
-            self.restore_order();
-        }
+        self.inner.begin_step(&self.basis);
         let fits = !R::Points::AT_PARTICLES;
         if fits || B::TAKES_IN_CELLS {
-            self.bins.list(&self.grid);
+            self.inner.bins.list(&self.inner.grid);
         }
         if const { B::TAKES_IN_CELLS } {
-            self.basis.take_in(&self.grid, &self.bins);
+            self.basis.take_in(&self.inner.grid, &self.inner.bins);
         }
-        self.spans.refresh(&self.basis, &self.grid, &self.bins, fits);
+        self.inner
+            .spans
+            .refresh(&self.basis, &self.inner.grid, &self.inner.bins, fits);
         if fits {
-            self.cut_cells();
+            self.inner.cut_cells();
         }
         if self.batched() && !R::Points::NON_LOCAL {
             return;
         }
-        let cloud = cloud(&self.grid, &self.bins, &self.particles, &self.cuts);
+        let cloud = cloud(
+            &self.inner.grid,
+            &self.inner.bins,
+            &self.inner.particles,
+            &self.inner.cuts,
+        );
         self.reconstruction.prepare(&cloud);
         let reduced = self.reconstruction.reduced_cells();
-        self.diagnostics.record_reduced(reduced);
-        self.diagnostics
+        self.inner.diagnostics.record_reduced(reduced);
+        self.inner
+            .diagnostics
             .record_virtual(self.reconstruction.virtual_cells());
     }
 
@@ -415,73 +309,17 @@ where
     /// wider than the grid.
     fn is_wide_enough(&self) -> bool {
         let linear = const { matches!(B::AT_FIXED_POINTS, FixedPoints::Linear) };
-        linear || self.basis.dofs(&self.grid).iter().all(|&count| count >= B::WIDTH)
-    }
-
-    /// Puts the particles in the order of their cells.
-    #[inline(never)]
-    fn restore_order(&mut self) {
-        let (surface, numbers_each) = (&mut self.surface, self.law.numbers());
-        let cells = self.bins.cells_mut();
-        let moved = self.order.restore(
-            &self.grid,
-            cells,
-            (&mut self.particles, &mut self.memory),
-            numbers_each,
-            &mut |targets| {
-                for point in surface.iter_mut() {
-                    point.particle = targets[point.particle] as usize;
-                }
-            },
-        );
-        if moved {
-            self.bins.note_crossings(1);
-            self.spans.forget();
-        }
-    }
-
-    /// Finds where surfaces cut cells, in one dimension.
-    fn cut_cells(&mut self) {
-        self.cuts.clear();
-        if const { D > 1 } {
-            return;
-        }
-        for point in &self.surface {
-            let cell = self.bins.cell_of(point.particle);
-            self.cuts.push(Cut {
-                cell: cell[0],
-                side: point.face.side,
-                position: self.surface_position(point)[0],
-            });
-        }
-    }
-
-    fn surface_position(&self, point: &SurfacePoint<T>) -> SVector<T, D> {
-        let p = point.particle;
-        let (x, volume) = (&self.particles.position[p], self.particles.volume[p]);
-        point.position(&self.grid, self.bins.cell_of(p), x, volume)
-    }
-
-    /// Where loads of a surface act, with the cell.
-    fn loaded_place(&self, point: &SurfacePoint<T>) -> (Cell<D>, SVector<T, D>) {
-        let p = point.particle;
-        let extent = self.particles.domains.half_extent(p, point.face.axis);
-        if const { B::DOMAIN.is_asked_for() }
-            && let Some(half_length) = extent
-        {
-            let x = point.end_of_domain(&self.particles.position[p], half_length);
-            if let Some(cell) = self.grid.locate(&x)
-                && self.grid.has_numbers(&cell, 0)
-            {
-                return (cell, x);
-            }
-        }
-        (*self.bins.cell_of(p), self.surface_position(point))
+        linear
+            || self
+                .basis
+                .dofs(&self.inner.grid)
+                .iter()
+                .all(|&count| count >= B::WIDTH)
     }
 
     /// The particles, in the order in which they are kept: see [`Stepper::numbers`].
     pub fn particles(&self) -> &Particles<T, D, L::Number, P::Particle> {
-        &self.particles
+        &self.inner.particles
     }
 
     /// For each of [`Stepper::particles`] its number in the order in which the [`Setup`] gave them; `None`
@@ -489,42 +327,42 @@ where
     /// the start and again as they move, in one dimension only where they start without any.
     /// [`Simulation::particles`] gives them back in their first order, and errors name their first numbers.
     pub fn numbers(&self) -> Option<&[u32]> {
-        self.order.numbers()
+        self.inner.order.numbers()
     }
 
     /// The grid.
     pub fn grid(&self) -> &Grid<T, D> {
-        &self.grid
+        &self.inner.grid
     }
 
     /// The constitutive law.
     pub fn law(&self) -> &L {
-        &self.law
+        &self.inner.law
     }
 
     /// Time reached (s).
     pub fn time(&self) -> T {
-        self.time
+        self.inner.time
     }
 
     /// Steps taken.
     pub fn steps(&self) -> usize {
-        self.steps
+        self.inner.steps
     }
 
     /// Number of DOFs.
     pub fn dof_count(&self) -> usize {
-        self.dofs.mass.len()
+        self.inner.dofs.mass.len()
     }
 
     /// Velocities of the DOFs in the last step (m/s).
     pub fn dof_velocities(&self) -> &[SVector<T, D>] {
-        &self.dofs.velocity
+        &self.inner.dofs.velocity
     }
 
     /// What was counted and measured so far.
     pub fn diagnostics(&self) -> &Diagnostics<T> {
-        &self.diagnostics
+        &self.inner.diagnostics
     }
 
     /// Bytes of the stepper and of all that it allocates: particles, their cells, what basis and
@@ -532,140 +370,15 @@ where
     /// did not before, and where particles move so far through a large grid that its
     /// [`Window`](crate::grid::Window) moves with them.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>()
-            + self.particles.bytes()
-            + size_of::<X::Particle>() * self.memory.capacity()
-            + self.places.bytes()
-            + self.bins.bytes()
-            + self.order.bytes()
-            + self.basis.bytes()
-            + self.reconstruction.bytes()
-            + self.dofs.bytes()
-            + self.liquid.bytes()
-            + self.spans.bytes()
-            + self.pairs.bytes()
-            + self.contact.bytes()
-            + size_of::<SurfacePoint<T>>() * self.surface.capacity()
-            + size_of::<Cut<T>>() * self.cuts.capacity()
-            + size_of::<CourantNumbers<T>>() * self.crossed.capacity()
-            + size_of::<SMatrix<T, D, D>>() * self.relaxed.capacity()
-            + size_of::<SVector<T, D>>() * self.body_forces.capacity()
-            + self.joint.bytes()
-            + self.seal.bytes()
-            + self.diffusion.bytes()
-            + size_of::<T>() * self.drag.len()
+        // What they hold of themselves is in it.
+        let own = size_of::<Self>() - size_of_val(&self.inner);
+        own + self.inner.bytes() + self.basis.bytes() + self.reconstruction.bytes()
     }
 
     /// [`Stepper::bytes`] over the number of particles.
     pub fn bytes_per_particle(&self) -> f64 {
-        self.bytes() as f64 / self.particles.len() as f64
+        self.bytes() as f64 / self.inner.particles.len() as f64
     }
-}
-
-/// Of how many things a stepper keeps something.
-struct Counts {
-    surface: usize,
-    /// Cells whose Courant numbers are kept.
-    crossed: usize,
-    /// Particles whose relaxed stress is kept.
-    relaxed: usize,
-    /// Functions of a cell along an axis, and on a side of it.
-    functions: [usize; 2],
-    /// Whether a liquid flows.
-    flows: bool,
-    /// Whether particles are summed in pairs of DOFs.
-    pairs: bool,
-}
-
-/// What a stepper keeps besides its setup, before there are DOFs. Made in a function of its own: what frees
-/// the fields that are there already where the next one fails is else compiled for every stepper.
-struct Parts<T: Scalar, const D: usize> {
-    bins: Bins<D>,
-    order: Order,
-    cuts: Vec<Cut<T>>,
-    dofs: Dofs<T, D>,
-    liquid: Dofs<T, D>,
-    joint: liquid::Joint<T, D>,
-    seal: liquid::Seal<T>,
-    spans: Spans<T, D>,
-    crossed: Vec<CourantNumbers<T>>,
-    relaxed: Vec<SMatrix<T, D, D>>,
-    balance: balance::Balance<T, D>,
-    contact: contact::WallContact<T, D>,
-    pairs: Pairs<T, D>,
-    diagnostics: Diagnostics<T>,
-}
-
-impl<T: Scalar, const D: usize> Parts<T, D> {
-    #[inline(never)]
-    fn new(grid: &Grid<T, D>, bins: Bins<D>, masses: &[T], counts: Counts) -> Self {
-        let mass = masses.iter().fold(T::zero(), |sum, &m| sum + m);
-        let sealed = if counts.flows { counts.surface } else { 0 };
-        let [along, beside] = counts.functions;
-        Self {
-            order: Order::new(grid, bins.cells()),
-            bins,
-            cuts: Vec::with_capacity(counts.surface),
-            dofs: Dofs::none(),
-            liquid: Dofs::none(),
-            joint: liquid::Joint::none(),
-            seal: liquid::Seal::new(sealed, along * beside, beside),
-            spans: Spans::new(masses.len()),
-            crossed: Vec::with_capacity(counts.crossed),
-            relaxed: vec![SMatrix::zeros(); counts.relaxed],
-            balance: balance::Balance::none(),
-            contact: contact::WallContact::none(),
-            pairs: Pairs::new(counts.pairs),
-            diagnostics: Diagnostics::new(mass, counts.flows),
-        }
-    }
-}
-
-/// Checks all that a stepper is to be made of and makes it fit: domains, window of the grid, what the
-/// transfer remembers. Returns the particles' cells and the places of the DOFs.
-fn take_in<T, const D: usize, B, R, L, P, X>(
-    setup: &mut Setup<T, D, B, R, L, P, X>,
-) -> Result<(Bins<D>, DofPlaces<T, D>), SetupError>
-where
-    T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
-    L: LawSweep<T, D>,
-    P: Phase<T, D>,
-    X: Transfer<T, D>,
-{
-    let (basis, particles, memory) = (&setup.basis, &mut setup.particles, &mut setup.memory);
-    check_material(&setup.law, &setup.phase, particles)?;
-    domain::lay::<T, D, B, _, _>(&setup.grid, particles);
-    domain::validate::<T, D, B, _, _>(&setup.grid, particles)?;
-    if P::FLOWS && R::Mass::SERIES {
-        return Err(SetupError::SeriesWithFlow);
-    }
-    if P::FLOWS && R::Mass::IN_ACCELERATION && D > 1 {
-        return Err(SetupError::OnePhaseOnly);
-    }
-    from_grid::refuse_what_it_cannot::<T, D, R, P, X>()?;
-    if memory.is_empty() {
-        memory.resize(particles.len(), X::Particle::default());
-    }
-    if memory.len() != particles.len() {
-        let (found, expected) = (memory.len(), particles.len());
-        let name = "memory";
-        return Err(SetupError::Lengths {
-            name,
-            found,
-            expected,
-        });
-    }
-    if const { R::Mass::IN_ACCELERATION && D > 1 } {
-        polynomial::refuse_bends_within_cells(basis, &setup.grid)?;
-    }
-    let bins = find_cells(&setup.grid, &setup.surface, &mut particles.position)?;
-    if const { B::FOLLOWS_WINDOW } {
-        window::lay(&mut setup.grid, bins.cells());
-    }
-    let places = from_grid::dof_places::<T, D, B, R::Mass, X>(basis, &setup.grid)?;
-    Ok((bins, places))
 }
 
 /// Checks particles and what they are made of.

@@ -1,6 +1,7 @@
 //! The parts of a stepper, handed out between steps and back at the end.
 
 use super::diffusion::refuse_without_capacity;
+use super::inner::{Given, Inner};
 use super::order::permute;
 use super::{Setup, Stepper, domain, refuse_unknown_stress, values};
 use crate::basis::BasisFamily;
@@ -34,17 +35,17 @@ where
 
     /// The phase.
     pub fn phase(&self) -> &P {
-        &self.phase
+        &self.inner.phase
     }
 
     /// The transfer.
     pub fn transfer(&self) -> &X {
-        &self.transfer
+        &self.inner.transfer
     }
 
     /// What the transfer remembers of each of [`Stepper::particles`].
     pub fn memory(&self) -> &[X::Particle] {
-        &self.memory
+        &self.inner.memory
     }
 
     /// Lets `edit` write particle data between two steps, in the order of [`Stepper::particles`]: velocities
@@ -57,23 +58,63 @@ where
         &mut self,
         edit: impl FnOnce(&mut Particles<T, D, L::Number, P::Particle>),
     ) -> Result<(), SetupError> {
-        let before = self.particles.clone();
-        edit(&mut self.particles);
-        let taken_in = self.take_in_edited();
+        let before = self.inner.particles.clone();
+        edit(&mut self.inner.particles);
+        let taken_in = self.inner.take_in_edited(&self.basis);
         if taken_in.is_err() {
-            self.particles = before;
+            self.inner.particles = before;
         }
         // Checks know particles by their places; the caller, by the numbers in which they were given.
-        taken_in.map_err(|error| error.renumbered(|place| self.order.number(place)))
+        taken_in.map_err(|error| error.renumbered(|place| self.inner.order.number(place)))
     }
 
     /// Lets `edit` write what the transfer remembers of each of [`Stepper::particles`]: to be forgotten where
     /// velocities were written that it does not belong to.
     pub fn edit_memory(&mut self, edit: impl FnOnce(&mut [X::Particle])) {
-        edit(&mut self.memory);
+        edit(&mut self.inner.memory);
     }
 
-    fn take_in_edited(&mut self) -> Result<(), SetupError> {
+    /// What a new stepper can be made of that goes on from here, with the particles in the order in which
+    /// they were given. Time, steps and diagnostics begin anew.
+    pub fn into_setup(self) -> Setup<T, D, B, R, L, P, X> {
+        let Self {
+            basis,
+            reconstruction,
+            velocity_mass,
+            inner,
+        } = self;
+        let Given {
+            grid,
+            law,
+            phase,
+            transfer,
+            particles,
+            memory,
+            surface,
+        } = inner.into_given();
+        Setup {
+            grid,
+            basis,
+            reconstruction,
+            law,
+            phase,
+            transfer,
+            velocity_mass,
+            particles,
+            memory,
+            surface,
+        }
+    }
+}
+
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    fn take_in_edited<B: BasisFamily<T, D>>(&mut self, basis: &B) -> Result<(), SetupError> {
         let (found, expected) = (self.particles.len(), self.bins.len());
         if found != expected {
             let name = "position";
@@ -99,7 +140,7 @@ where
         self.order.note_crossings(expected);
         self.spans.forget();
         if B::FOLLOWS_WINDOW {
-            self.follow_particles();
+            self.follow_particles(basis);
         }
         // Momentum and mass may be others than the last step left.
         self.balance.momentum = None;
@@ -108,17 +149,14 @@ where
         Ok(())
     }
 
-    /// What a new stepper can be made of that goes on from here, with the particles in the order in which
-    /// they were given. Time, steps and diagnostics begin anew.
-    pub fn into_setup(self) -> Setup<T, D, B, R, L, P, X> {
+    /// What a setup holds of it, with the particles in the order in which they were given.
+    #[inline(never)]
+    fn into_given(self) -> Given<T, D, L, P, X> {
         let Self {
             grid,
-            basis,
-            reconstruction,
             law,
             phase,
             transfer,
-            velocity_mass,
             mut particles,
             mut memory,
             mut surface,
@@ -135,14 +173,11 @@ where
             memory.swap(a, b);
         });
         let whole = Window::whole(grid.cells());
-        Setup {
+        Given {
             grid: grid.with_window(whole),
-            basis,
-            reconstruction,
             law,
             phase,
             transfer,
-            velocity_mass,
             particles,
             memory,
             surface,

@@ -3,6 +3,7 @@
 use nalgebra::SMatrix;
 
 use super::Stepper;
+use super::inner::Inner;
 use crate::basis::BasisFamily;
 use crate::law::{Bodies, LawSweep};
 use crate::parallel::{CELLS, each_span, many_threads};
@@ -30,31 +31,40 @@ where
     /// Filters the particles: the stress after the force is assembled from it (nothing
     /// has used it since), the velocity after its update and before it is mapped.
     pub(super) fn relax(&mut self, dt: T) {
-        self.measure_courant_numbers(dt);
-        let (crossed, particles) = (&self.crossed[..], &mut self.particles);
+        self.inner.measure_courant_numbers(dt);
+        let (crossed, particles) = (&self.inner.crossed[..], &mut self.inner.particles);
         let cloud = Cloud {
-            grid: &self.grid,
-            bins: &self.bins,
+            grid: &self.inner.grid,
+            bins: &self.inner.bins,
             positions: &particles.position,
             volumes: &particles.volume,
-            cuts: &self.cuts,
+            cuts: &self.inner.cuts,
         };
         let reconstruction = &mut self.reconstruction;
-        if !self.law.remembers() {
+        if !self.inner.law.remembers() {
             R::Filter::relax(reconstruction, &cloud, crossed, &mut particles.stress);
         } else {
-            self.relaxed.copy_from_slice(&particles.stress);
-            R::Filter::relax(reconstruction, &cloud, crossed, &mut self.relaxed);
+            self.inner.relaxed.copy_from_slice(&particles.stress);
+            R::Filter::relax(reconstruction, &cloud, crossed, &mut self.inner.relaxed);
         }
         let (masses, velocities) = (&particles.mass, &mut particles.velocity);
         R::Filter::relax_weighted(reconstruction, &cloud, masses, crossed, velocities);
-        if self.law.remembers() {
-            self.strain_to_relaxed();
+        if self.inner.law.remembers() {
+            self.inner.strain_to_relaxed();
         }
     }
+}
 
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
     /// Moves the stress of a law that remembers, which follows from its state or is bound to it, by small
     /// strains: stress, state and volume stay those of one material.
+    #[inline(never)]
     pub(super) fn strain_to_relaxed(&mut self) {
         let (law, particles) = (&self.law, &mut self.particles);
         let large_strain = law.large_strain();
@@ -88,6 +98,7 @@ where
     /// Parts of each occupied cell that are crossed in a step, in root mean square over its particles: by
     /// waves along the shortest side, for they run every way, and by the particles, who run along their own.
     /// All particles of a cell count alike, so that neither their order nor a mirror matters.
+    #[inline(never)]
     pub(super) fn measure_courant_numbers(&mut self, dt: T) {
         let occupied = self.bins.occupied();
         let mut crossed = std::mem::take(&mut self.crossed);

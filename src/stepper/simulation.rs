@@ -4,6 +4,8 @@ use std::io::{self, Read, Write};
 
 use nalgebra::SVector;
 
+use super::critical::critical_step;
+use super::inner::Inner;
 use super::order::Order;
 use super::{
     Conservation, CriticalStep, Diagnostics, DiffusionCondition, Energy, FaceCondition, Forcing,
@@ -144,14 +146,11 @@ where
     }
 
     fn particles(&self) -> Particles<f64, D> {
-        copied(&self.particles, &self.order)
+        copied(&self.inner.particles, &self.inner.order)
     }
 
     fn into_particles(mut self: Box<Self>) -> (Particles<f64, D>, Vec<PoreLiquid<f64, D>>) {
-        let liquid = Simulation::liquid(self.as_ref());
-        let none = Particles::from_points(std::iter::empty(), T::zero());
-        let particles = std::mem::replace(&mut self.particles, none);
-        let numbers = self.order.take_numbers();
+        let (particles, numbers, liquid) = self.inner.give_particles_away();
         // The DOFs' arrays and the reconstruction's are freed before the particles may be copied. By the
         // stepper as a whole: to free it field by field would be compiled for every stepper once more.
         drop(self);
@@ -159,7 +158,7 @@ where
     }
 
     fn liquid(&self) -> Vec<PoreLiquid<f64, D>> {
-        liquid_of(&self.phase, &self.particles.phase, &self.order)
+        liquid_of(&self.inner.phase, &self.inner.particles.phase, &self.inner.order)
     }
 
     fn material_fields(&self) -> MaterialFields {
@@ -167,7 +166,7 @@ where
     }
 
     fn diagnostics(&self) -> Diagnostics<f64> {
-        cast_diagnostics(&self.diagnostics)
+        cast_diagnostics(&self.inner.diagnostics)
     }
 
     fn energy(&self) -> Energy<f64> {
@@ -178,8 +177,8 @@ where
         self.critical_step(&cast_forcing(forcing)).map(cast_critical)
     }
 
-    fn into_critical_step(self: Box<Self>, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>> {
-        Stepper::into_critical_step(*self, &cast_forcing(forcing)).map(cast_critical)
+    fn into_critical_step(mut self: Box<Self>, forcing: &Forcing<f64, D>) -> Option<CriticalStep<f64>> {
+        critical_step(self.as_mut(), &cast_forcing(forcing)).map(cast_critical)
     }
 
     fn stiffness_bound(&mut self, forcing: &Forcing<f64, D>) -> f64 {
@@ -207,7 +206,7 @@ where
     }
 
     fn particle_count(&self) -> usize {
-        self.particles.len()
+        self.inner.particles.len()
     }
 
     fn dof_count(&self) -> usize {
@@ -216,6 +215,26 @@ where
 
     fn bytes_per_particle(&self) -> f64 {
         self.bytes_per_particle()
+    }
+}
+
+/// Particles, their numbers and their liquid.
+type Bodies<T, const D: usize, S, Q> = (Particles<T, D, S, Q>, Option<Vec<u32>>, Vec<PoreLiquid<f64, D>>);
+
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    /// Leaves none.
+    #[inline(never)]
+    fn give_particles_away(&mut self) -> Bodies<T, D, L::Number, P::Particle> {
+        let liquid = liquid_of(&self.phase, &self.particles.phase, &self.order);
+        let none = Particles::from_points(std::iter::empty(), T::zero());
+        let particles = std::mem::replace(&mut self.particles, none);
+        (particles, self.order.take_numbers(), liquid)
     }
 }
 

@@ -258,7 +258,7 @@ impl<T: Scalar, const D: usize> Spans<T, D> {
             self.reduced = vec![0; self.totals.len() * PARTICLES / CELLS];
         }
         // Beyond one dimension windows grow by whole rows when particles cross.
-        if D > 1 {
+        if const { D > 1 } {
             of_scalars
                 .iter_mut()
                 .for_each(|store| reserve(store, MOST_OVERLAP * dofs));

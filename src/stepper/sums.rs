@@ -6,7 +6,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::Dofs;
+use super::dofs::Dofs;
 use super::liquid::UniformLoad;
 use super::spans::{Spans, Store, share};
 use crate::basis::BasisFamily;
@@ -63,7 +63,7 @@ where
         let mass = group.amounts::<FULL, T, K>(k, self.masses);
         let mut scalars = [mass; S];
         let mut liquid_mass = zero;
-        if S > 1 || C > 1 {
+        if const { S > 1 || C > 1 } {
             liquid_mass = match self.liquid_masses {
                 Some(masses) => group.amounts::<FULL, T, K>(k, masses),
                 None => group.amounts_of(
@@ -73,7 +73,7 @@ where
                 ),
             };
         }
-        if S > 1 {
+        if const { S > 1 } {
             scalars[1] = liquid_mass;
             scalars[S - 1] = group.amounts_of(
                 k,
@@ -82,20 +82,20 @@ where
             );
         }
         let mut vectors = [[zero; D]; C];
-        if C > 0 {
+        if const { C > 0 } {
             let velocity = group.vectors::<FULL, T, K, D>(k, self.velocities);
             for c in 0..D {
                 vectors[0][c] = velocity[c] * mass;
             }
         }
-        if C > 1 {
+        if const { C > 1 } {
             let velocity = liquid_velocities::<T, D, P, K, N>(k, group, self.phase, self.data);
             for c in 0..D {
                 vectors[C - 1][c] = velocity[c] * liquid_mass;
             }
         }
         let mut tensors = [[[zero; D]; D]; G];
-        if G > 0 {
+        if const { G > 0 } {
             let volume = group.amounts::<FULL, T, K>(k, self.volumes);
             let along: [K::V; D] = each(
                 #[inline(always)]
@@ -117,7 +117,7 @@ where
                     tensors[0][c][a] = stress[c][a] * along[a];
                 }
             }
-            if G > 1 {
+            if const { G > 1 } {
                 let pressure = group.amounts_of(
                     k,
                     #[inline(always)]
@@ -170,7 +170,7 @@ impl<'a, T: Scalar, const D: usize, P: Phase<T, D>> Amounts<'a, T, D, P> {
             return *effective;
         }
         let mut total = self.phase.total_stress(effective, &self.data[p]);
-        if G > 1 {
+        if const { G > 1 } {
             for a in 0..D {
                 total[(a, a)] -= self.even.stress;
             }

@@ -5,12 +5,11 @@
 //! so do all sums: where the box lies changes no bit but through the spans that threads share, and the
 //! preconditioner of a consistent mass matrix.
 
-use super::Stepper;
+use super::inner::Inner;
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid, Window};
 use crate::law::LawSweep;
 use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::transfer::Transfer;
 
@@ -33,11 +32,9 @@ pub(super) fn lay<T: Scalar, const D: usize>(grid: &mut Grid<T, D>, cells: &[Cel
     };
 }
 
-impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
 where
     T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
     X: Transfer<T, D>,
@@ -45,17 +42,17 @@ where
     /// Lays the window anew around the particles, with DOFs to it.
     #[cold]
     #[inline(never)]
-    pub(super) fn follow_particles(&mut self) {
+    pub(super) fn follow_particles<B: BasisFamily<T, D>>(&mut self, basis: &B) {
         self.strayed = false;
         lay(&mut self.grid, self.bins.cells());
-        self.follow_window();
+        self.follow_window(basis);
     }
 
     /// Takes in that cells and DOFs have other numbers.
-    pub(super) fn follow_window(&mut self) {
+    pub(super) fn follow_window<B: BasisFamily<T, D>>(&mut self, basis: &B) {
         self.bins.note_numbering();
         self.order.follow_window(&self.grid);
         self.spans.forget();
-        self.allocate_dofs();
+        self.allocate_dofs(basis);
     }
 }

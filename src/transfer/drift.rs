@@ -193,7 +193,7 @@ fn fill<T: Scalar, const D: usize, B: BasisFamily<T, D>, K: Packs<T, N>, const N
     // Not those of the outcome, which other functions are given: these stay in registers.
     let mut bounds = outcome.bounds;
     while p < places.cells.len() && has_room(p, MOST_LANES) && outcome.left.is_none() {
-        if D == 1 {
+        if const { D == 1 } {
             while let (true, Some(group)) = (has_room(p, N), Group::<N>::full_at(p, places.cells)) {
                 bounds = with_number(bounds, sweep.grid.linear(&places.cells[p]));
                 let increments = sweep.shift::<true, K, N, C>(

@@ -226,7 +226,7 @@ pub(super) trait EachGroup<const N: usize> {
 pub(super) fn each_group<const D: usize, const N: usize>(cells: &[Cell<D>], sweep: &mut impl EachGroup<N>) {
     let mut p = 0;
     while p < cells.len() {
-        if D == 1 {
+        if const { D == 1 } {
             while let Some(group) = Group::full_at(p, cells) {
                 sweep.take::<true>(group);
                 p += N;

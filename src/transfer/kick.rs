@@ -108,7 +108,7 @@ pub(crate) fn kick<
             totals[q].momentum += SVector::from(momenta[q]);
             totals[q].scale += size(&momenta[q]);
         }
-        if M > 0 {
+        if const { M > 0 } {
             let space = (basis, grid, &mut stencil);
             sums.add(
                 space,
@@ -120,7 +120,7 @@ pub(crate) fn kick<
             );
         }
     }
-    if M > 0 {
+    if const { M > 0 } {
         sums.flush(&mut sink);
     }
     (totals, what)
@@ -176,7 +176,7 @@ fn in_packs<
     };
     each_group(cells, &mut groups);
     let (momenta, scales) = (groups.momenta, groups.scales);
-    if M > 0 {
+    if const { M > 0 } {
         groups.sums.end(k, sweep, &mut groups.sink);
     }
     let mut totals = [Momentum::zero(); C];
@@ -238,7 +238,7 @@ where
             }
             self.scales[q] = self.scales[q] + size(&momenta[q]);
         }
-        if M > 0 {
+        if const { M > 0 } {
             self.sums
                 .add(k, sweep, cell, &factors, &parts(&momenta), &mut self.sink);
         }
@@ -248,7 +248,7 @@ where
 /// Sizes of vectors. Along one axis without the root, which takes as long as a dozen sums.
 #[inline(always)]
 fn size<T: Scalar, V: Number<T>, const D: usize>(vectors: &[V; D]) -> V {
-    if D == 1 {
+    if const { D == 1 } {
         return vectors[0].abs();
     }
     let mut square = vectors[0] * vectors[0];

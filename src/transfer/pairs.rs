@@ -120,15 +120,18 @@ impl<V: Copy, const D: usize> PairSums<V, D> {
                 }
             }
         }
-        let (second, third) = (if D > 1 { count } else { 1 }, if D > 2 { count } else { 1 });
+        let (second, third) = (
+            if const { D > 1 } { count } else { 1 },
+            if D > 2 { count } else { 1 },
+        );
         let mut first = 0;
         for c in 0..third {
             for b in 0..second {
                 let mut across = mass;
-                if D > 1 {
+                if const { D > 1 } {
                     across = across * products[1][b];
                 }
-                if D > 2 {
+                if const { D > 2 } {
                     across = across * products[D - 1][c];
                 }
                 for a in 0..count {
@@ -232,10 +235,10 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
             for other in 0..=row {
                 let (other_start, l) = self.row(other);
                 let mut across = 0;
-                if D > 2 {
+                if const { D > 2 } {
                     across = pair(k[1], l[1]) * Self::PAIRS_ALONG;
                 }
-                if D > 1 {
+                if const { D > 1 } {
                     across = (across + pair(k[0], l[0])) * Self::PAIRS_ALONG;
                 }
                 for a in 0..B::WIDTH {

@@ -34,11 +34,15 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     /// Of a row the first DOF after the cell's first, and its place along the axes 1 and 2.
     #[inline(always)]
     pub(super) fn row(&self, row: usize) -> (usize, [usize; 2]) {
-        if D == 1 {
+        if const { D == 1 } {
             return (0, [0; 2]);
         }
         let (k1, k2) = (row % B::WIDTH, row / B::WIDTH);
-        let deeper = if D == 3 { k2 * self.strides[D - 1] } else { 0 };
+        let deeper = if const { D == 3 } {
+            k2 * self.strides[D - 1]
+        } else {
+            0
+        };
         (deeper + k1 * self.strides[1], [k1, k2])
     }
 
@@ -51,12 +55,12 @@ impl<T: Scalar, const D: usize, B: BasisFamily<T, D>> Sweep<'_, T, D, B> {
     ) -> Across<K::V> {
         let (value, slope) = (&factors.value, &factors.slope);
         let zero = k.splat(T::zero());
-        if D == 1 {
+        if const { D == 1 } {
             Across {
                 value: k.splat(T::one()),
                 slope: [zero; 2],
             }
-        } else if D == 3 {
+        } else if const { D == 3 } {
             Across {
                 value: value[1][k1] * value[D - 1][k2],
                 slope: [slope[1][k1] * value[D - 1][k2], value[1][k1] * slope[D - 1][k2]],

@@ -18,13 +18,14 @@ impl<T: Scalar, const D: usize> DomainViews<'_, T, D> {
         (cell, x): (&Cell<D>, &SVector<T, D>),
         f: impl FnMut(usize, T, SVector<T, D>),
     ) {
-        match const { B::DOMAIN } {
-            Domain::Point => basis.for_each(grid, cell, x, f),
-            Domain::Size { .. } => {
-                let domain = SMatrix::from_diagonal(&self.half_lengths[p]);
-                basis.for_each_over(grid, cell, x, &domain, f);
-            }
-            Domain::Edges => basis.for_each_over(grid, cell, x, &self.half_edges[p], f),
+        // No `match`, of which all branches would be compiled for every basis.
+        if const { matches!(B::DOMAIN, Domain::Point) } {
+            basis.for_each(grid, cell, x, f);
+        } else if const { matches!(B::DOMAIN, Domain::Edges) } {
+            basis.for_each_over(grid, cell, x, &self.half_edges[p], f);
+        } else {
+            let domain = SMatrix::from_diagonal(&self.half_lengths[p]);
+            basis.for_each_over(grid, cell, x, &domain, f);
         }
     }
 }

@@ -114,10 +114,10 @@ impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Su
                 for c in 0..D {
                     let t = &parts.tensors[q][c];
                     along[q][c] = t[0] * across.value;
-                    if D > 1 {
+                    if const { D > 1 } {
                         sides[q][c] = t[1] * across.slope[0];
                     }
-                    if D == 3 {
+                    if const { D == 3 } {
                         sides[q][c] = t[D - 1].mul_add(across.slope[1], sides[q][c]);
                     }
                 }
@@ -141,7 +141,7 @@ impl<V: Copy, const D: usize, const S: usize, const C: usize, const G: usize> Su
                     for c in 0..D {
                         let before = if kept { self.forces[from][q][c] } else { zero };
                         let mut sum = along[q][c].mul_add(slope, before);
-                        if D > 1 {
+                        if const { D > 1 } {
                             sum = sides[q][c].mul_add(value, sum);
                         }
                         self.forces[place][q][c] = sum;

@@ -43,7 +43,7 @@ pub(super) fn reaches<T: Scalar, const D: usize>(
     axis: usize,
     open: [bool; 2],
 ) -> [T; 2] {
-    if D == 1 {
+    if const { D == 1 } {
         return [false, true].map(|above| {
             let reach = outermost(cloud, cell, above);
             let ends = open[usize::from(above)] && reach < T::lit(FULL);

@@ -60,7 +60,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
 
     /// Leaves those cells to their particles that neither these nor the cells near them determine.
     pub(super) fn leave_undetermined(&mut self, cloud: &Cloud<'_, T, D>) {
-        if D == 1 {
+        if const { D == 1 } {
             self.leave_short_runs(cloud);
         }
         for place in 0..self.cells.len() {
@@ -101,7 +101,7 @@ impl<T: Scalar, const D: usize, const NB: usize> RelaxedTaylor<T, D, NB> {
         let mut held = false;
         bins.for_each_neighbour(grid, place, |_, _, other| {
             held |= holds(other);
-            if D > 1 {
+            if const { D > 1 } {
                 bins.for_each_neighbour(grid, other, |_, _, next| held |= holds(next));
             }
         });

@@ -40,6 +40,7 @@ use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::record::Record;
 use crate::scalar::Scalar;
+use crate::stepper::inner::Inner;
 use crate::transfer::Transfer;
 use codec::{In, Out};
 
@@ -61,13 +62,7 @@ where
     /// # Errors
     /// Those of `out`, and [`io::ErrorKind::Unsupported`] for scalars other than `f64` and `f32`.
     pub fn save(&self, out: &mut dyn Write) -> io::Result<()> {
-        let mut out = Out::new::<T>(out)?;
-        let progress = (self.strayed, self.time, self.steps);
-        let sums = (&self.diagnostics, &self.balance);
-        save_progress(&mut out, self.shape(), &self.grid, progress, sums)?;
-        self.particles.save(&mut out)?;
-        out.records(&self.memory)?;
-        save_places(&mut out, &self.surface, &self.bins, &self.order, &self.spans)
+        self.inner.save(out)
     }
 
     /// Takes over what [`Stepper::save`] wrote, of a stepper with the same setup. DOF velocities are those of
@@ -77,9 +72,38 @@ where
     /// If it cannot be read, comes from a stepper of another kind or makes no sense. The state is then
     /// neither the old nor the new one: such a stepper is of no further use.
     pub fn restore(&mut self, from: &mut dyn Read) -> Result<(), RestoreError> {
+        self.inner.restore(&self.basis, from)
+    }
+}
+
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    L::Number: Record<T>,
+    P: Phase<T, D>,
+    P::Particle: Record<T>,
+    X: Transfer<T, D>,
+    X::Particle: Record<T>,
+{
+    /// See [`Stepper::save`].
+    #[inline(never)]
+    fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut out = Out::new::<T>(out)?;
+        let progress = (self.strayed, self.time, self.steps);
+        let sums = (&self.diagnostics, &self.balance);
+        save_progress(&mut out, self.shape(), &self.grid, progress, sums)?;
+        self.particles.save(&mut out)?;
+        out.records(&self.memory)?;
+        save_places(&mut out, &self.surface, &self.bins, &self.order, &self.spans)
+    }
+
+    /// See [`Stepper::restore`].
+    #[inline(never)]
+    fn restore<B: BasisFamily<T, D>>(&mut self, basis: &B, from: &mut dyn Read) -> Result<(), RestoreError> {
         let mut from = In::new::<T>(from)?;
         let (window, strayed) = read_window(&mut from, self.shape())?;
-        self.take_window(window)?;
+        self.take_window(basis, window)?;
         self.strayed = strayed;
         let progress = (&mut self.time, &mut self.steps);
         restore_progress(&mut from, progress, &mut self.diagnostics, &mut self.balance)?;
@@ -88,8 +112,8 @@ where
         refuse_without_capacity(&self.phase, &self.particles)?;
         domain::validate::<T, D, B, _, _>(&self.grid, &self.particles)?;
         // Windows overlap, and a matrix has so many numbers for each DOF.
-        let width = 1 + self.basis.half_band(&self.grid);
-        let most = 16 * width * (self.dof_count() + self.particles.len());
+        let width = 1 + basis.half_band(&self.grid);
+        let most = 16 * width * (self.dofs.mass.len() + self.particles.len());
         let places = (&mut self.surface[..], &mut self.bins, &mut self.order);
         restore_places(
             &mut from,
@@ -99,13 +123,28 @@ where
             most,
         )
     }
+}
 
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    L::Number: Record<T>,
+    P: Phase<T, D>,
+    P::Particle: Record<T>,
+    X: Transfer<T, D>,
+    X::Particle: Record<T>,
+{
     fn shape(&self) -> Vec<(&'static str, usize)> {
         shape_of::<T, D>(&self.grid, self.particles.len(), self.surface.len())
     }
 
     /// Takes over the window of cells that was read.
-    fn take_window(&mut self, window: Window<D>) -> Result<(), RestoreError> {
+    fn take_window<B: BasisFamily<T, D>>(
+        &mut self,
+        basis: &B,
+        window: Window<D>,
+    ) -> Result<(), RestoreError> {
         if window == *self.grid.window() {
             return Ok(());
         }
@@ -115,7 +154,7 @@ where
             let what = "the window of cells, axis";
             return Err(RestoreError::Invalid { what, index: 0 });
         }
-        self.follow_window();
+        self.follow_window(basis);
         Ok(())
     }
 }

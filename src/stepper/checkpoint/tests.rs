@@ -83,7 +83,7 @@ where
     stepper.set_body_forces(|x| {
         let mut force = SVector::zeros();
         // Nothing leaves through the floor or the ceiling of the plane.
-        let within = if D == 1 {
+        let within = if const { D == 1 } {
             0.75
         } else {
             (x[D - 1] * PI / CELLS[1] as f64).sin()
@@ -142,7 +142,7 @@ fn goes_on_as_if_nothing_had_happened<const D: usize, B, R, L>(
 fn the_plane_goes_on_from_any_step_though_its_spans_change() {
     let (mut wide, mut orders) = (0, Vec::new());
     goes_on_as_if_nothing_had_happened(&plane(Shepard), 34, |stepper| {
-        let spans = &stepper.spans;
+        let spans = &stepper.inner.spans;
         let narrow = spans
             .bounds
             .iter()

@@ -6,20 +6,20 @@
 
 use nalgebra::SVector;
 
+use super::saturated::respond_with_both;
 use super::solve::Problem;
 use super::wall::coordinates;
 use super::{WallAction, WallContact};
-use crate::basis::BasisFamily;
 use crate::law::LawSweep;
-use crate::mass::MassModel;
 use crate::phase::Phase;
-use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::stepper::Forcing;
 use crate::stepper::acceleration::Walls;
 use crate::stepper::critical::at_rest;
+use crate::stepper::inner::Inner;
 use crate::stepper::matrix::Unknown;
+use crate::stepper::sweeps::Sweeps;
 use crate::stepper::velocity::{divide, divide_by_mass};
-use crate::stepper::{Forcing, Stepper};
 use crate::transfer::Transfer;
 
 /// Share of the walls' greatest relative velocity within which the contact law is to hold.
@@ -45,131 +45,175 @@ pub(super) const fn reach<const D: usize>() -> usize {
     }
 }
 
-impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
+/// Any stepper.
+type Any<'s, T, const D: usize, L, P, X> = &'s mut dyn Sweeps<T, D, L, P, X>;
+
+/// Solves for the impulses and passes them on. `shape` is that of the lattice of DOFs.
+#[inline(never)]
+pub(super) fn push_by_mapping<T, const D: usize, L, P, X>(
+    stepper: Any<'_, T, D, L, P, X>,
+    shape: [usize; D],
+    [dt, scale]: [T; 2],
+    forcing: &Forcing<T, D>,
+) -> WallAction<T, D>
 where
     T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
     X: Transfer<T, D>,
 {
-    /// Solves for the impulses and passes them on.
-    pub(super) fn push_by_mapping(&mut self, dt: T, forcing: &Forcing<T, D>, scale: T) -> WallAction<T, D> {
-        let rest = at_rest(forcing);
-        let mut action = WallAction {
-            solved: false,
-            ..WallAction::none()
-        };
-        let least = (scale * T::lit(TOLERANCE)).max(self.contact.round_off());
-        self.contact.reached.copy_from_slice(&self.dofs.velocity);
-        if const { P::FLOWS } {
-            self.contact.liquid.begin(&self.liquid.velocity);
-        }
-        if const { P::FLOWS && Self::WALLS_BY_SUMS } {
-            self.contact.estimate_columns();
-        } else {
-            self.probe_columns(dt, &rest);
-        }
-        self.contact.impulse.fill(SVector::zeros());
-        self.contact.read_reached();
-        self.contact.begin_corrections();
-        let (mut energy, mut last, mut failures) = (T::zero(), T::lit(f64::INFINITY), 0);
-        for _ in 0..MOST_CORRECTIONS {
-            let contact = &mut self.contact;
-            contact.read_reached();
-            contact.tried.clone_from(&contact.dofs.contacts);
-            let mut problem = Problem {
-                dofs: &mut contact.dofs,
-                delassus: &contact.delassus,
-                velocity: &mut contact.velocity,
-                closed: &contact.closed,
-                subspace: const { Self::SYMMETRIC }.then_some(&mut contact.subspace),
-            };
-            let solved = problem.solve(least);
-            if !solved.changed {
-                // What the last sweep changed is too little to be passed on.
-                contact.dofs.contacts.clone_from(&contact.tried);
-                action.solved = true;
-                break;
-            }
-            let size = contact.correction();
-            if !(solved.settled && size <= last * T::lit(GROWTH)) {
-                failures += 1;
-                last = T::lit(f64::INFINITY);
-                contact.take_back(failures);
-                continue;
-            }
-            last = size;
-            contact.lay_new_impulses();
-            self.respond(dt, &rest);
-            let after = self.contact.energy_with(&self.dofs.velocity);
-            // Only where the particles' matrix makes the operator symmetric is this their energy.
-            if R::Mass::IN_ACCELERATION && !P::FLOWS && after - energy > energy.abs() * T::lit(RISE) {
-                failures += 1;
-                self.contact.take_back(failures);
-                continue;
-            }
-            energy = after;
-            self.take_response(&mut action);
-        }
-        self.dofs.velocity.copy_from_slice(&self.contact.reached);
-        if const { P::FLOWS } {
-            self.contact
-                .end_with_liquid(&mut self.liquid.velocity, &mut action);
-        }
-        action
+    let rest = at_rest(forcing);
+    let mut action = WallAction {
+        solved: false,
+        ..WallAction::none()
+    };
+    let inner = stepper.inner();
+    let least = (scale * T::lit(TOLERANCE)).max(inner.contact.round_off());
+    inner.contact.reached.copy_from_slice(&inner.dofs.velocity);
+    if const { P::FLOWS } {
+        inner.contact.liquid.begin(&inner.liquid.velocity);
     }
+    if const { P::FLOWS } && inner.walls_by_sums() {
+        inner.contact.estimate_columns();
+    } else {
+        probe_columns(stepper, &shape, dt, &rest);
+    }
+    let contact = &mut stepper.inner().contact;
+    contact.impulse.fill(SVector::zeros());
+    contact.read_reached();
+    contact.begin_corrections();
+    let (mut energy, mut last, mut failures) = (T::zero(), T::lit(f64::INFINITY), 0);
+    for _ in 0..MOST_CORRECTIONS {
+        let inner = stepper.inner();
+        let (symmetric, in_acceleration) = (inner.is_symmetric(), inner.in_acceleration());
+        let contact = &mut inner.contact;
+        contact.read_reached();
+        contact.tried.clone_from(&contact.dofs.contacts);
+        let mut problem = Problem {
+            dofs: &mut contact.dofs,
+            delassus: &contact.delassus,
+            velocity: &mut contact.velocity,
+            closed: &contact.closed,
+            subspace: symmetric.then_some(&mut contact.subspace),
+        };
+        let solved = problem.solve(least);
+        if !solved.changed {
+            // What the last sweep changed is too little to be passed on.
+            contact.dofs.contacts.clone_from(&contact.tried);
+            action.solved = true;
+            break;
+        }
+        let size = contact.correction();
+        if !(solved.settled && size <= last * T::lit(GROWTH)) {
+            failures += 1;
+            last = T::lit(f64::INFINITY);
+            contact.take_back(failures);
+            continue;
+        }
+        last = size;
+        contact.lay_new_impulses();
+        respond(stepper, dt, &rest);
+        let inner = stepper.inner();
+        let after = inner.contact.energy_with(&inner.dofs.velocity);
+        // Only where the particles' matrix makes the operator symmetric is this their energy.
+        if in_acceleration && !P::FLOWS && after - energy > energy.abs() * T::lit(RISE) {
+            failures += 1;
+            inner.contact.take_back(failures);
+            continue;
+        }
+        energy = after;
+        inner.take_response(&mut action);
+    }
+    let inner = stepper.inner();
+    inner.dofs.velocity.copy_from_slice(&inner.contact.reached);
+    if const { P::FLOWS } {
+        let velocities = &mut inner.liquid.velocity;
+        inner.contact.end_with_liquid(velocities, &mut action);
+    }
+    action
+}
 
+/// Fills the columns of the Delassus operator.
+fn probe_columns<T, const D: usize, L, P, X>(
+    stepper: Any<'_, T, D, L, P, X>,
+    shape: &[usize; D],
+    dt: T,
+    rest: &Forcing<T, D>,
+) where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    let stride = 2 * reach::<D>() + 1;
+    for colour in 0..stride.pow(D as u32) {
+        let colour = coordinates(colour, &[stride; D]);
+        let contact = &mut stepper.inner().contact;
+        if contact.lay_unit_impulses(&colour, shape, stride) {
+            respond(stepper, dt, rest);
+            let inner = stepper.inner();
+            let responses = &inner.dofs.velocity;
+            inner.contact.note_columns(&colour, shape, stride, responses);
+        }
+    }
+    let WallContact { dofs, delassus, .. } = &mut stepper.inner().contact;
+    delassus.complete(dofs);
+}
+
+/// Changes of velocity of particles and DOFs by the impulses laid at the DOFs; the latter's take the place of
+/// the velocities.
+fn respond<T, const D: usize, L, P, X>(stepper: Any<'_, T, D, L, P, X>, dt: T, rest: &Forcing<T, D>)
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    if const { P::FLOWS } {
+        return respond_with_both(stepper, dt, rest);
+    }
+    stepper.inner().accelerate_by_impulses(rest);
+    stepper.kick_particles(T::one());
+    stepper.map_momenta();
+    let inner = stepper.inner();
+    // The particles' matrix is the one that the accelerations were solved with.
+    let walls = Walls::of_solid(&inner.face_dofs, rest);
+    let fresh = !inner.in_acceleration();
+    divide_by_mass(&mut inner.dofs, inner.mass, &walls, fresh);
+    std::mem::swap(&mut inner.particles.velocity, &mut inner.contact.kicks);
+}
+
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
     /// Whether the operator at hand is symmetric: in one phase the particles' own matrix is what
     /// accelerations are solved with too, and the estimate for two is made so.
-    const SYMMETRIC: bool = match P::FLOWS {
-        true => Self::WALLS_BY_SUMS,
-        false => R::Mass::IN_ACCELERATION,
-    };
-
-    /// Fills the columns of the Delassus operator.
-    fn probe_columns(&mut self, dt: T, rest: &Forcing<T, D>) {
-        let shape = self.basis.dofs(&self.grid);
-        let stride = 2 * reach::<D>() + 1;
-        for colour in 0..stride.pow(D as u32) {
-            let colour = coordinates(colour, &[stride; D]);
-            if self.contact.lay_unit_impulses(&colour, &shape, stride) {
-                self.respond(dt, rest);
-                let responses = &self.dofs.velocity;
-                self.contact.note_columns(&colour, &shape, stride, responses);
-            }
+    fn is_symmetric(&self) -> bool {
+        match const { P::FLOWS } {
+            true => self.walls_by_sums(),
+            false => self.in_acceleration(),
         }
-        let WallContact { dofs, delassus, .. } = &mut self.contact;
-        delassus.complete(dofs);
     }
 
-    /// Changes of velocity of particles and DOFs by the impulses laid at the DOFs; the latter's take the
-    /// place of the velocities.
-    fn respond(&mut self, dt: T, rest: &Forcing<T, D>) {
-        if const { P::FLOWS } {
-            return self.respond_with_both(dt, rest);
-        }
+    /// Accelerations of the DOFs by the impulses laid at them, and particles without velocities.
+    fn accelerate_by_impulses(&mut self, rest: &Forcing<T, D>) {
         let walls = Walls::of_solid(&self.face_dofs, rest);
-        let force = &mut self.dofs.force;
-        force.copy_from_slice(&self.contact.gain);
-        if R::Mass::IN_ACCELERATION {
+        self.dofs.force.copy_from_slice(&self.contact.gain);
+        if self.in_acceleration() {
             let pick = |_, acceleration| acceleration;
             self.dofs
                 .solve(Unknown::Acceleration, self.mass, &walls, true, &pick);
         } else {
-            divide(force, &self.dofs.mass);
+            divide(&mut self.dofs.force, &self.dofs.mass);
         }
         let force = &mut self.dofs.force;
         walls.for_each_held(|dof, axis, _, _| force[dof][axis] = T::zero());
         std::mem::swap(&mut self.particles.velocity, &mut self.contact.kicks);
         self.particles.velocity.fill(SVector::zeros());
-        self.kick_particles(T::one());
-        self.map_momenta();
-        // The particles' matrix is the one that the accelerations were solved with.
-        let walls = Walls::of_solid(&self.face_dofs, rest);
-        divide_by_mass(&mut self.dofs, self.mass, &walls, !R::Mass::IN_ACCELERATION);
-        std::mem::swap(&mut self.particles.velocity, &mut self.contact.kicks);
     }
 
     /// Adds the response to velocities of particles and DOFs.

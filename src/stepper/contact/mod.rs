@@ -42,11 +42,12 @@ use super::{Forcing, Stepper};
 use crate::basis::BasisFamily;
 use crate::grid::{Cell, Grid};
 use crate::law::LawSweep;
-use crate::mass::MassModel;
+use crate::mass::{Divisor, MassModel};
 use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
+use crate::stepper::inner::Inner;
 use crate::transfer::Transfer;
 use delassus::Delassus;
 use saturated::LiquidAtWalls;
@@ -227,49 +228,82 @@ where
     // Out of line: there is a step for every method, and few runs have walls that rub.
     #[inline(never)]
     fn apply_contact_with(&mut self, dt: T, forcing: &Forcing<T, D>) {
+        let Some(scale) = self.inner.begin_contact(&self.basis, dt, forcing) else {
+            return;
+        };
+        let mut action = match const { R::Mass::OF_PARTICLES && !R::Mass::IN_ACCELERATION && !P::FLOWS } {
+            true => self.inner.push_by_sums(&self.basis, scale),
+            false => {
+                let shape = self.basis.dofs(&self.inner.grid);
+                mapping::push_by_mapping(self, shape, [dt, scale], forcing)
+            }
+        };
+        self.inner.end_contact(forcing, &mut action);
+    }
+}
+
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    /// Finds the contacts that are closed and what an impulse at each does to its DOF; returns their greatest
+    /// velocity, if they move at all.
+    #[inline(never)]
+    fn begin_contact<B: BasisFamily<T, D>>(
+        &mut self,
+        basis: &B,
+        dt: T,
+        forcing: &Forcing<T, D>,
+    ) -> Option<T> {
         if const { P::FLOWS } {
             self.answer_of_both(dt, forcing);
         } else {
-            self.detect_contacts(forcing);
+            self.detect_contacts(basis, forcing);
             self.contact
                 .invert_masses(&self.dofs.mass, &self.face_dofs, forcing);
         }
         self.contact.read(&self.dofs.velocity);
         let scale = self.contact.scale();
-        if scale <= T::zero() {
-            return;
-        }
-        let mut action = match const { Self::WALLS_BY_SUMS && !P::FLOWS } {
-            true => sums::push_by_sums(
-                (&self.basis, &self.grid, self.bins.cells()),
-                &mut self.particles,
-                scale,
-                &mut self.contact,
-                &mut self.dofs,
-            ),
-            false => self.push_by_mapping(dt, forcing, scale),
-        };
+        (scale > T::zero()).then_some(scale)
+    }
+
+    /// The impulses where momenta are particle sums over lumped masses.
+    fn push_by_sums<B: BasisFamily<T, D>>(&mut self, basis: &B, scale: T) -> WallAction<T, D> {
+        let space = (basis, &self.grid, self.bins.cells());
+        let particles = &mut self.particles;
+        sums::push_by_sums(space, particles, scale, &mut self.contact, &mut self.dofs)
+    }
+
+    /// Holds what walls hold, and counts what they did.
+    #[inline(never)]
+    fn end_contact(&mut self, forcing: &Forcing<T, D>, action: &mut WallAction<T, D>) {
         let velocities = &mut self.dofs.velocity;
         Walls::of_solid(&self.face_dofs, forcing).for_each_held(|dof, axis, velocity, _| {
             velocities[dof][axis] = velocity;
         });
-        self.contact.measure_work(&self.dofs.velocity, &mut action);
+        self.contact.measure_work(&self.dofs.velocity, action);
         if let Some(momentum) = &mut self.balance.momentum {
             *momentum += action.impulse;
         }
-        self.diagnostics.record_walls(&action);
+        self.diagnostics.record_walls(action);
     }
 
     /// Whether momenta are particle sums over lumped masses.
-    const WALLS_BY_SUMS: bool = R::Mass::OF_PARTICLES && !R::Mass::IN_ACCELERATION;
+    fn walls_by_sums(&self) -> bool {
+        self.mass == Divisor::Particles
+    }
 
     /// Finds the contacts that are closed.
-    fn detect_contacts(&mut self, forcing: &Forcing<T, D>) {
-        let by_sums = const { Self::WALLS_BY_SUMS };
+    #[inline(never)]
+    fn detect_contacts<B: BasisFamily<T, D>>(&mut self, basis: &B, forcing: &Forcing<T, D>) {
+        let by_sums = self.walls_by_sums();
         if !self.contact.dofs.fit(forcing, self.dofs.mass.len()) {
-            let reach = self.basis.reach();
+            let reach = basis.reach();
             let room = Room {
-                shape: self.basis.dofs(&self.grid),
+                shape: basis.dofs(&self.grid),
                 reach: if by_sums { reach } else { mapping::reach::<D>() },
                 seen: (reach + 1).pow(D as u32),
                 maps: !by_sums || P::FLOWS,
@@ -280,7 +314,7 @@ where
                 .allocate(room, &self.face_dofs, forcing, (&self.grid, initial, &self.order));
         }
         self.contact.dofs.begin(forcing);
-        let space = (&self.basis, &self.grid, self.bins.cells());
+        let space = (basis, &self.grid, self.bins.cells());
         detect_contacts(space, &self.particles, &self.order, forcing, &mut self.contact);
     }
 }

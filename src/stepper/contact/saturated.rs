@@ -34,6 +34,8 @@ use crate::phase::{Drag, Phase, PoreLiquid};
 use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::stepper::acceleration::Walls;
+use crate::stepper::inner::Inner;
+use crate::stepper::sweeps::Sweeps;
 use crate::stepper::{Forcing, PoreCondition, Stepper};
 use crate::transfer::Transfer;
 
@@ -126,7 +128,7 @@ where
 {
     /// What the wall at a face that rubs did in the last step in which one did.
     pub fn wall_impulse(&self, face: Face) -> WallImpulse<T, D> {
-        let contacts = &self.contact.dofs.contacts;
+        let contacts = &self.inner.contact.dofs.contacts;
         let there = contacts.iter().filter(|contact| contact.wall.face == face);
         let none = WallImpulse {
             whole: SVector::zeros(),
@@ -137,10 +139,22 @@ where
             effective: sum.effective + contact.effective(),
         })
     }
+}
 
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
     /// Finds the contacts that are closed: positions, and with them what walls seal, are those of the whole
     /// step.
-    pub(in super::super) fn find_contacts(&mut self, forcing: &Forcing<T, D>) {
+    pub(in super::super) fn find_contacts<B: BasisFamily<T, D>>(
+        &mut self,
+        basis: &B,
+        forcing: &Forcing<T, D>,
+    ) {
         self.contact.closed.clear();
         if const { X::FROM_GRID } || !super::rub(forcing) {
             // What touched walls of a step before seals nothing now.
@@ -152,7 +166,7 @@ where
             return;
         }
         let laid = self.contact.liquid.borne.len();
-        self.detect_contacts(forcing);
+        self.detect_contacts(basis, forcing);
         let contacts = self.contact.dofs.contacts.len();
         if contacts != laid {
             self.seal.enlarge(contacts);
@@ -160,8 +174,12 @@ where
     }
 
     /// Adds to the sealed surfaces the contacts that are closed.
-    pub(in super::super) fn seal_contacts(&mut self, forcing: &Forcing<T, D>) {
-        let shape = self.basis.dofs(&self.grid);
+    pub(in super::super) fn seal_contacts<B: BasisFamily<T, D>>(
+        &mut self,
+        basis: &B,
+        forcing: &Forcing<T, D>,
+    ) {
+        let shape = basis.dofs(&self.grid);
         let size = self.grid.cell_size();
         let cell = size.iter().fold(T::one(), |product, &h| product * h);
         for &k in &self.contact.closed {
@@ -236,27 +254,6 @@ where
         self.contact.split_pressure();
     }
 
-    /// Changes of velocity of both phases' particles and DOFs by the impulses laid at the DOFs; the latter's
-    /// take the place of the velocities.
-    pub(super) fn respond_with_both(&mut self, dt: T, rest: &Forcing<T, D>) {
-        for dofs in [&mut self.dofs, &mut self.liquid] {
-            dofs.velocity.fill(SVector::zeros());
-        }
-        self.dofs.force.copy_from_slice(&self.contact.gain);
-        self.liquid.force.fill(SVector::zeros());
-        // Forces of one second for impulses; drag takes the step that it has.
-        self.accelerate_both(dt, rest);
-        self.measure_pressure(T::one());
-        std::mem::swap(&mut self.particles.velocity, &mut self.contact.kicks);
-        self.particles.velocity.fill(SVector::zeros());
-        self.exchange_liquid_kicks(true);
-        self.kick_particles(T::one());
-        self.map_momenta();
-        self.divide_both(dt, rest, false);
-        self.exchange_liquid_kicks(false);
-        std::mem::swap(&mut self.particles.velocity, &mut self.contact.kicks);
-    }
-
     /// Puts the particles' liquid velocities aside and lets them be zero, or exchanges them with what was put
     /// aside.
     fn exchange_liquid_kicks(&mut self, zero: bool) {
@@ -291,6 +288,38 @@ where
         }
         self.contact.split_pressure();
     }
+}
+
+/// Changes of velocity of both phases' particles and DOFs by the impulses laid at the DOFs; the latter's take
+/// the place of the velocities.
+pub(super) fn respond_with_both<T, const D: usize, L, P, X>(
+    stepper: &mut dyn Sweeps<T, D, L, P, X>,
+    dt: T,
+    rest: &Forcing<T, D>,
+) where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    let inner = stepper.inner();
+    for dofs in [&mut inner.dofs, &mut inner.liquid] {
+        dofs.velocity.fill(SVector::zeros());
+    }
+    inner.dofs.force.copy_from_slice(&inner.contact.gain);
+    inner.liquid.force.fill(SVector::zeros());
+    // Forces of one second for impulses; drag takes the step that it has.
+    inner.accelerate_both(dt, rest);
+    inner.measure_pressure(T::one());
+    std::mem::swap(&mut inner.particles.velocity, &mut inner.contact.kicks);
+    inner.particles.velocity.fill(SVector::zeros());
+    inner.exchange_liquid_kicks(true);
+    stepper.kick_particles(T::one());
+    stepper.map_momenta();
+    let inner = stepper.inner();
+    inner.divide_both(dt, rest, false);
+    inner.exchange_liquid_kicks(false);
+    std::mem::swap(&mut inner.particles.velocity, &mut inner.contact.kicks);
 }
 
 /// Root of what an impulse at a DOF, of the solid's and the liquid's mass, adds to the solid's velocity there

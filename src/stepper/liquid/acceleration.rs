@@ -2,22 +2,18 @@
 
 use nalgebra::SVector;
 
+use super::super::Forcing;
 use super::super::acceleration::Walls;
 use super::super::dofs::Dofs;
-use super::super::{Forcing, Stepper};
-use crate::basis::BasisFamily;
+use super::super::inner::Inner;
 use crate::law::LawSweep;
-use crate::mass::MassModel;
 use crate::phase::{Drag, Phase};
-use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::transfer::Transfer;
 
-impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
 where
     T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
     X: Transfer<T, D>,
@@ -26,8 +22,9 @@ where
     ///
     /// Implicit drag takes the velocities at the end of the step, `v + dt a`: two equations in two unknowns a
     /// DOF, here solved without products of masses, which would underflow in nearly empty cells.
+    #[inline(never)]
     pub(in super::super) fn accelerate_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
-        if const { R::Mass::IN_ACCELERATION } {
+        if self.in_acceleration() {
             return self.solve_both(dt, forcing);
         }
         let mixture = Mixture {

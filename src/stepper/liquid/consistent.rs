@@ -5,6 +5,7 @@ use nalgebra::SVector;
 use super::super::acceleration::Walls;
 use super::super::forces::{WEAK, fill_with_pairs};
 use super::super::ghost::lump_undetermined_cells;
+use super::super::inner::Inner;
 use super::super::matrix::MassMatrix;
 use super::super::{Forcing, Stepper};
 use super::joint::Joint;
@@ -27,14 +28,14 @@ where
 {
     /// The matrices of both masses and of the drag.
     pub(in super::super) fn assemble_joint_matrices(&mut self) {
-        let (phase, particles) = (&self.phase, &self.particles);
+        let (phase, particles) = (&self.inner.phase, &self.inner.particles);
         let n = phase.porosity();
         let Joint {
             liquid_mass,
             drag_of,
             drag,
             ..
-        } = &mut self.joint;
+        } = &mut self.inner.joint;
         let bodies = particles.mass.iter().zip(&particles.volume);
         for ((mass, drag), (&solid_mass, &volume)) in liquid_mass.iter_mut().zip(&mut drag_of[..]).zip(bodies)
         {
@@ -42,20 +43,36 @@ where
             *drag = n * phase.drag(solid_mass, volume);
         }
         let filled = [
-            (&particles.mass[..], &mut self.dofs.matrix),
-            (&liquid_mass[..], &mut self.liquid.matrix),
+            (&particles.mass[..], &mut self.inner.dofs.matrix),
+            (&liquid_mass[..], &mut self.inner.liquid.matrix),
             (&drag_of[..], drag),
         ];
         for (masses, matrix) in filled {
-            let bodies = particles.sites(self.bins.cells());
-            fill_with_pairs(&self.basis, &self.grid, bodies, masses, &mut self.pairs, matrix);
-            let space = (&self.basis, &self.grid, &self.bins);
+            let bodies = particles.sites(self.inner.bins.cells());
+            fill_with_pairs(
+                &self.basis,
+                &self.inner.grid,
+                bodies,
+                masses,
+                &mut self.inner.pairs,
+                matrix,
+            );
+            let space = (&self.basis, &self.inner.grid, &self.inner.bins);
             lump_undetermined_cells(space, &self.reconstruction, matrix);
             matrix.complete(Some(T::lit(WEAK)));
         }
     }
+}
 
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
     /// Turns the forces of both phases into accelerations.
+    #[inline(never)]
     pub(super) fn solve_both(&mut self, dt: T, forcing: &Forcing<T, D>) {
         let implicit = self.phase.drag_treatment() == Drag::Implicit;
         let (n, b) = (self.phase.porosity(), forcing.body_force);
@@ -94,7 +111,7 @@ where
         }
     }
 
-    /// As [`Stepper::seal_accelerations`], where all DOFs answer to the force on one.
+    /// As [`Inner::seal_accelerations`], where all DOFs answer to the force on one.
     fn seal_jointly(&mut self, forcing: &Forcing<T, D>) {
         if self.seal.is_empty() {
             return;
@@ -117,7 +134,8 @@ where
         }
     }
 
-    /// As [`Stepper::seal_velocities`], with the matrices that the velocities were mapped with.
+    /// As [`Inner::seal_velocities`], with the matrices that the velocities were mapped with.
+    #[inline(never)]
     pub(super) fn seal_mapped_jointly(&mut self) {
         if self.seal.is_empty() {
             return;

@@ -1,6 +1,7 @@
 //! The filter of the particles of two phases.
 
 use super::super::Stepper;
+use super::super::inner::Inner;
 use super::joint::Joint;
 use crate::basis::BasisFamily;
 use crate::field::Pair;
@@ -22,35 +23,44 @@ where
     /// Effective stress and pressure after the forces are assembled from them, the velocities of both phases,
     /// each weighted with its masses, after their update and before they are mapped.
     pub(in super::super) fn relax_both(&mut self, dt: T) {
-        self.measure_courant_numbers(dt);
-        let (crossed, phase) = (&self.crossed[..], &self.phase);
+        self.inner.measure_courant_numbers(dt);
+        let (crossed, phase) = (&self.inner.crossed[..], &self.inner.phase);
         let Joint {
             liquid_mass,
             state,
             liquid_velocity,
             ..
-        } = &mut self.joint;
-        let particles = &mut self.particles;
+        } = &mut self.inner.joint;
+        let particles = &mut self.inner.particles;
         let copies = state.iter_mut().zip(&mut liquid_velocity[..]);
         for ((state, velocity), (stress, data)) in copies.zip(particles.stress.iter().zip(&particles.phase)) {
             let liquid = phase.liquid(data);
             (*state, *velocity) = (Pair(*stress, liquid.pressure), liquid.velocity);
         }
         let cloud = Cloud {
-            grid: &self.grid,
-            bins: &self.bins,
+            grid: &self.inner.grid,
+            bins: &self.inner.bins,
             positions: &particles.position,
             volumes: &particles.volume,
-            cuts: &self.cuts,
+            cuts: &self.inner.cuts,
         };
         let reconstruction = &mut self.reconstruction;
         R::Filter::relax(reconstruction, &cloud, crossed, state);
         R::Filter::relax_weighted(reconstruction, &cloud, liquid_mass, crossed, liquid_velocity);
         let mass = &particles.mass[..];
         R::Filter::relax_weighted(reconstruction, &cloud, mass, crossed, &mut particles.velocity);
-        self.take_in_relaxed();
+        self.inner.take_in_relaxed();
     }
+}
 
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
+    #[inline(never)]
     fn take_in_relaxed(&mut self) {
         let (phase, particles, joint) = (&self.phase, &mut self.particles, &self.joint);
         let relaxed = joint.state.iter().zip(&joint.liquid_velocity);

@@ -5,14 +5,14 @@ use nalgebra::{SMatrix, SVector};
 use super::super::acceleration::Walls;
 use super::super::contact::rub;
 use super::super::forces::{add_load, each_seen};
-use super::super::{FaceCondition, Forcing, PoreCondition, Stepper, SurfacePoint};
+use super::super::inner::Inner;
+use super::super::{FaceCondition, Forcing, PoreCondition, SurfacePoint};
 use super::seal::{Answer, Place, Seal};
 use crate::basis::BasisFamily;
 use crate::field::{Pair, Symmetric};
 use crate::grid::{Face, Side};
 use crate::law::LawSweep;
 use crate::phase::{Drag, Phase};
-use crate::reconstruction::Reconstruction;
 use crate::scalar::Scalar;
 use crate::transfer::Transfer;
 
@@ -80,11 +80,9 @@ fn traction<T: Scalar, const D: usize>(forcing: &Forcing<T, D>, point: &SurfaceP
     }
 }
 
-impl<T, const D: usize, B, R, L, P, X> Stepper<T, D, B, R, L, P, X>
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
 where
     T: Scalar,
-    B: BasisFamily<T, D>,
-    R: Reconstruction<T, D>,
     L: LawSweep<T, D>,
     P: Phase<T, D>,
     X: Transfer<T, D>,
@@ -115,7 +113,12 @@ where
 
     /// What loads the surfaces besides the even part: tractions on the whole, pressures on the liquid where
     /// it passes.
-    pub(in super::super) fn add_surface_loads(&mut self, even: &UniformLoad<T>, forcing: &Forcing<T, D>) {
+    pub(in super::super) fn add_surface_loads<B: BasisFamily<T, D>>(
+        &mut self,
+        basis: &B,
+        even: &UniformLoad<T>,
+        forcing: &Forcing<T, D>,
+    ) {
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
             let (axis, area, outward) = (point.face.axis, point.area, point.outward());
@@ -128,20 +131,21 @@ where
                 PoreCondition::Pressure(pressure) => (pressure - even.pressure) * outward,
                 PoreCondition::Sealed => T::zero(),
             };
-            let (cell, x) = self.loaded_place(point);
+            let (cell, x) = self.loaded_place(basis, point);
             let mut on_liquid = SVector::zeros();
             on_liquid[axis] = pressure * area;
-            let (space, place) = ((&self.basis, &self.grid), (&cell, &x));
+            let (space, place) = ((basis, &self.grid), (&cell, &x));
             add_load(space, place, &(load * area), &mut self.dofs.force);
             add_load(space, place, &on_liquid, &mut self.liquid.force);
         }
     }
 
     /// Finds the points of the surfaces that the liquid does not pass.
-    pub(in super::super) fn find_seals(&mut self, forcing: &Forcing<T, D>) {
+    #[inline(never)]
+    pub(in super::super) fn find_seals<B: BasisFamily<T, D>>(&mut self, basis: &B, forcing: &Forcing<T, D>) {
         self.seal.clear();
-        self.find_contacts(forcing);
-        let shape = self.basis.dofs(&self.grid);
+        self.find_contacts(basis, forcing);
+        let shape = basis.dofs(&self.grid);
         for k in 0..self.surface.len() {
             let point = &self.surface[k];
             if !is_sealed(forcing, point) {
@@ -158,7 +162,7 @@ where
                 continue;
             }
             let x = self.surface_position(point);
-            let (space, contact) = ((&self.basis, &self.grid), &self.contact);
+            let (space, contact) = ((basis, &self.grid), &self.contact);
             let place = Place {
                 face: point.face,
                 layer,
@@ -170,12 +174,13 @@ where
                 each_seen(space, (cell, &x), &mut |i, phi| add(i, phi, !sealed_by_wall(i)));
             });
         }
-        self.seal_contacts(forcing);
+        self.seal_contacts(basis, forcing);
         number_components(&mut self.seal, Walls::of_both(&self.face_dofs, forcing));
     }
 
     /// Takes from the accelerations what would let liquid pass a sealed surface. The pressure there acts on
     /// the liquid alone, that is, its opposite on the solid; the drag that is felt at the step's end resists.
+    #[inline(never)]
     pub(super) fn seal_accelerations(&mut self, dt: T) {
         let resistance = self.resistance(dt);
         let (solid, liquid) = (&mut self.dofs, &mut self.liquid);
@@ -185,6 +190,7 @@ where
     }
 
     /// Takes from the mapped velocities the slip through sealed surfaces, by the same projection.
+    #[inline(never)]
     pub(super) fn seal_velocities(&mut self, dt: T) {
         let resistance = self.resistance(dt);
         let (solid, liquid) = (&mut self.dofs, &mut self.liquid);

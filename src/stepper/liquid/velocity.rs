@@ -2,6 +2,7 @@
 
 use super::super::acceleration::Walls;
 use super::super::dofs::Dofs;
+use super::super::inner::Inner;
 use super::super::velocity::undo_mass;
 use super::super::{Forcing, Stepper};
 use super::acceleration::ShareOfDrag;
@@ -28,10 +29,19 @@ where
         if const { !R::Mass::OF_PARTICLES } {
             self.fit_momenta(true);
         }
-        self.divide_both(dt, forcing, true);
+        self.inner.divide_both(dt, forcing, true);
     }
+}
 
+impl<T, const D: usize, L, P, X> Inner<T, D, L, P, X>
+where
+    T: Scalar,
+    L: LawSweep<T, D>,
+    P: Phase<T, D>,
+    X: Transfer<T, D>,
+{
     /// Momenta to velocities, with the told values at held DOFs and no slip through sealed surfaces.
+    #[inline(never)]
     pub(in super::super) fn divide_both(&mut self, dt: T, forcing: &Forcing<T, D>, fresh: bool) {
         let walls = Walls::of_both(&self.face_dofs, forcing);
         let dofs = [&mut self.dofs, &mut self.liquid];
@@ -40,7 +50,7 @@ where
         }
         let share = self.share_of_drag(dt);
         hold_velocities([&mut self.dofs, &mut self.liquid], &self.drag, walls, share);
-        if const { R::Mass::IN_ACCELERATION } {
+        if self.in_acceleration() {
             self.seal_mapped_jointly();
         } else {
             self.seal_velocities(dt);

@@ -126,13 +126,51 @@ impl<T, const D: usize> Parts<T, D> {
     {
         let mass = R::Mass::named(self.velocity_mass);
         let mass = mass.ok_or(BuildError::NoSuchMass(self.velocity_mass))?;
-        let pores = P::FLOWS.then_some(self.pores);
-        let particles = made_of(self.particles, pores, data, &self.law, self.under_stress)?;
-        let setup = Setup::new(self.grid, basis, reconstruction, self.law, phase, particles);
-        let setup = setup.with_velocity_mass(mass).with_surface(self.surface);
+        // All that may fail while it is whole, in a function that is compiled for no method.
+        let Ready {
+            grid,
+            law,
+            phase,
+            particles,
+            surface,
+        } = self.ready(phase, data)?;
+        let setup = Setup::new(grid, basis, reconstruction, law, phase, particles);
+        let setup = setup.with_velocity_mass(mass).with_surface(surface);
         let stepper = Stepper::new(setup)?;
         Ok(Box::new(stepper))
     }
+
+    /// What does not depend on the method.
+    #[inline(never)]
+    fn ready<P>(
+        self,
+        phase: P,
+        data: fn(PoreLiquid<f64, D>) -> P::Particle,
+    ) -> Result<Ready<T, D, P>, SetupError>
+    where
+        T: Scalar + Record<T> + Default,
+        AnyLaw<T, D>: LawSweep<T, D, Number = T>,
+        P: Phase<T, D>,
+    {
+        let pores = P::FLOWS.then_some(self.pores);
+        let particles = made_of(self.particles, pores, data, &self.law, self.under_stress)?;
+        Ok(Ready {
+            grid: self.grid,
+            law: self.law,
+            phase,
+            particles,
+            surface: self.surface,
+        })
+    }
+}
+
+/// What a stepper of known phases is made of besides its method.
+struct Ready<T: Scalar, const D: usize, P: Phase<T, D>> {
+    grid: Grid<T, D>,
+    law: AnyLaw<T, D>,
+    phase: P,
+    particles: Particles<T, D, T, P::Particle>,
+    surface: Vec<SurfacePoint<T>>,
 }
 
 /// The particles with their liquid, if it flows, and their states.
