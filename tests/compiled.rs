@@ -16,9 +16,18 @@ pub fn parts<const D: usize, L>(grid: Grid<f64, D>, law: L, particles: Particles
 where
     L: ConstitutiveLaw<f64, D, State: Record<f64>> + 'static,
 {
+    behind(grid, AnyLaw::new(law), particles)
+}
+
+/// The same with a law that is behind a pointer already.
+pub fn behind<const D: usize>(
+    grid: Grid<f64, D>,
+    law: AnyLaw<f64, D>,
+    particles: Particles<f64, D>,
+) -> Parts<f64, D> {
     Parts {
         grid,
-        law: AnyLaw::new(law),
+        law,
         liquid: None,
         velocity_mass: VelocityMass::Lumped,
         virtual_points: false,
