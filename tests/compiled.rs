@@ -38,7 +38,8 @@ pub fn behind<const D: usize>(
     }
 }
 
-/// The stepper of a method, with this mass or, where its reconstruction has no such mass, the one that it has.
+/// The stepper of a method, with this mass or, where its reconstruction has no such mass, with the one that
+/// it has.
 pub fn simulation<const D: usize>(
     method: Method,
     mass: VelocityMass,
