@@ -52,20 +52,19 @@ where
 {
     let grid = Grid::new(SVector::zeros(), SVector::repeat(8.0), [8; D]).unwrap();
     let points = lattice(&grid, &SVector::repeat(1.0), &SVector::repeat(7.0), [3; D]);
-    let mut particles: Particles<f64, D, _> = Particles::at_rest(&points, 1e3);
+    let mut particles: Particles<f64, D> = Particles::at_rest(&points, 1e3);
     let speed = SVector::from_fn(|a, _| 0.3 + a as f64);
     for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
         *v = speed + gradient * x;
     }
-    // The law of the other steppers here, so that they are compiled once.
-    let law = NeoHookean {
+    let law = LinearElastic {
         moduli: Moduli::from_young(1e-9, 0.0).unwrap(),
     };
     let setup = Setup::new(grid, basis, Shepard, law, OnePhase, particles);
     (Stepper::new(setup.with_transfer(transfer)).unwrap(), speed)
 }
 
-type Block<const D: usize, B, X> = Stepper<f64, D, B, Shepard, NeoHookean<f64>, OnePhase, X>;
+type Block<const D: usize, B, X> = Stepper<f64, D, B, Shepard, LinearElastic<f64>, OnePhase, X>;
 
 /// A linear field of velocity comes back from the grid as it was: where the DOFs about a particle are full of
 /// particles that know it, at the second step.
