@@ -5,6 +5,7 @@ mod architecture;
 mod boundaries;
 mod cases;
 mod command;
+mod compiled;
 mod conservation;
 mod convergence;
 mod domains;

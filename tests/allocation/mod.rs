@@ -3,51 +3,31 @@
 
 mod memory;
 
-use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
-use materialpoint::mass::{MassModel, VelocityMass};
-use materialpoint::method::{Method, MethodVisitor, ReconstructionKind};
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::{Method, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
-use materialpoint::phase::{Drag, OnePhase};
-use materialpoint::reconstruction::Reconstruction;
-use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use materialpoint::phase::Drag;
+use materialpoint::stepper::{FaceCondition, Forcing, Simulation};
 use materialpoint_command::run::simulation_in;
 use materialpoint_command::scene::Scene;
 use nalgebra::vector;
 
+use crate::compiled::{self, parts};
 use crate::two_phase::column::{AT_REST, Column, loaded, table_6};
 
-/// The large bar.
-struct LargeBar(VelocityMass);
-
-impl MethodVisitor<f64> for LargeBar {
-    type Output = Box<dyn Simulation<1>>;
-
-    fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
-    where
-        B: BasisFamily<f64, 1> + Send + 'static,
-        R: Reconstruction<f64, 1> + Clone + Send + 'static,
-    {
-        let grid = Grid::new(vector![0.0], vector![1.0], [20]).unwrap();
-        let points = lattice(&grid, grid.min(), grid.max(), [8]);
-        let mut particles = Particles::at_rest(&points, 2e3);
-        for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
-            v[0] = 0.8 * (std::f64::consts::PI * x[0]).sin();
-        }
-        let setup = Setup::new(
-            grid,
-            basis,
-            reconstruction,
-            Hill {
-                moduli: Moduli::uniaxial(4e4).unwrap(),
-            },
-            OnePhase,
-            particles,
-        )
-        .with_velocity_mass(MassModel::preferring(self.0));
-        Box::new(Stepper::new(setup).unwrap())
+fn large_bar(method: Method, mass: VelocityMass) -> Box<dyn Simulation<1>> {
+    let grid = Grid::new(vector![0.0], vector![1.0], [20]).unwrap();
+    let points = lattice(&grid, grid.min(), grid.max(), [8]);
+    let mut particles = Particles::at_rest(&points, 2e3);
+    for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
+        v[0] = 0.8 * (std::f64::consts::PI * x[0]).sin();
     }
+    let law = Hill {
+        moduli: Moduli::uniaxial(4e4).unwrap(),
+    };
+    compiled::simulation(method, mass, parts(grid, law, particles))
 }
 
 #[test]
@@ -91,7 +71,7 @@ fn no_step_allocates() {
             VelocityMass::Constrained,
             VelocityMass::Lumped,
         ] {
-            let mut simulation = method.dispatch(LargeBar(mass)).unwrap();
+            let mut simulation = large_bar(method, mass);
             let steps = allocation_counter::measure(|| {
                 for _ in 0..1000 {
                     simulation.step(1e-4, &forcing).unwrap();

@@ -2,9 +2,11 @@
 
 mod own_bases;
 
-use materialpoint::method::Method;
+use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint_command::run::{Outcome, run};
 use materialpoint_command::scene::Scene;
+
+use crate::compiled::{self, parts};
 
 const RULES: &str = r#"
 title = "wave"
@@ -106,16 +108,14 @@ fn a_traction_looks_along_its_face_on_either_side() {
 /// The end functions of open knots interpolate: a particle at the wall itself moves exactly with it.
 #[test]
 fn held_bspline_ends_are_exact() {
-    use materialpoint::basis::BSpline;
     use materialpoint::grid::{Face, Grid, Side};
     use materialpoint::law::{LinearElastic, Moduli};
     use materialpoint::mass::VelocityMass;
     use materialpoint::particles::Particles;
-    use materialpoint::phase::OnePhase;
-    use materialpoint::reconstruction::Taylor;
-    use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
+    use materialpoint::stepper::{FaceCondition, Forcing};
     use nalgebra::vector;
 
+    let method = Method::new(Basis::BSpline { degree: 2 }, ReconstructionKind::Taylor);
     for mass in [
         VelocityMass::Consistent,
         VelocityMass::Constrained,
@@ -138,15 +138,7 @@ fn held_bspline_ends_are_exact() {
         let law = LinearElastic {
             moduli: Moduli::uniaxial(1e4).unwrap(),
         };
-        let setup = Setup::new(
-            grid,
-            BSpline::<2>,
-            Taylor::<f64, 1, 3>::new(),
-            law,
-            OnePhase,
-            particles,
-        );
-        let mut stepper = Stepper::new(setup.with_velocity_mass(mass)).unwrap();
+        let mut stepper = compiled::simulation(method, mass, parts(grid, law, particles));
         let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
         let forcing = ends
             .into_iter()
@@ -154,7 +146,7 @@ fn held_bspline_ends_are_exact() {
         for _ in 0..50 {
             stepper.step(1e-4, &forcing).unwrap();
         }
-        let moved = &stepper.particles().displacement;
+        let moved = stepper.particles().displacement;
         assert_eq!((moved[0][0], moved[20][0]), (0.0, 0.0), "{mass:?}");
         assert!(moved[10][0] > 1e-3);
     }
@@ -164,27 +156,21 @@ fn held_bspline_ends_are_exact() {
 /// moves with the interpolated velocity.
 #[test]
 fn a_told_motion_reaches_the_particles_with_the_wall_s_share() {
-    use materialpoint::basis::Linear;
     use materialpoint::grid::{Face, Grid, Side};
     use materialpoint::law::{LinearElastic, Moduli};
     use materialpoint::particles::Particles;
-    use materialpoint::phase::OnePhase;
-    use materialpoint::reconstruction::Shepard;
-    use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
+    use materialpoint::stepper::{FaceCondition, Forcing};
+    use materialpoint_steppers::Build;
     use nalgebra::vector;
 
     let (share, velocity, acceleration, dt) = (0.75, 0.3, 2.0, 1e-3);
-    let mut stepper = Stepper::new(Setup::new(
-        Grid::new(vector![0.0], vector![4.0], [4]).unwrap(),
-        Linear,
-        Shepard,
-        LinearElastic {
-            moduli: Moduli::uniaxial(1.0).unwrap(),
-        },
-        OnePhase,
-        Particles::at_rest(&[(vector![1.0 - share], 1.0)], 1.0),
-    ))
-    .unwrap();
+    let grid = Grid::new(vector![0.0], vector![4.0], [4]).unwrap();
+    let law = LinearElastic {
+        moduli: Moduli::uniaxial(1.0).unwrap(),
+    };
+    let particles = Particles::at_rest(&[(vector![1.0 - share], 1.0)], 1.0);
+    let method = Method::new(Basis::Linear, ReconstructionKind::Shepard);
+    let mut stepper = parts(grid, law, particles).stepper(method).unwrap();
     let wall = Face {
         axis: 0,
         side: Side::Min,

@@ -5,16 +5,15 @@
 
 mod entering;
 
-use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
-use materialpoint::mass::{MassModel, VelocityMass};
-use materialpoint::method::{Method, MethodVisitor};
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::Method;
 use materialpoint::particles::{Particles, lattice};
-use materialpoint::phase::OnePhase;
-use materialpoint::reconstruction::Reconstruction;
-use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use materialpoint::stepper::{FaceCondition, Forcing, Simulation};
 use nalgebra::vector;
+
+use crate::compiled::{self, parts};
 
 /// Round-off of sums of 21 000 momenta, which pass no tree: a few times the machine epsilon times the root of
 /// their number.
@@ -28,14 +27,8 @@ struct Bar {
     shuffled: bool,
 }
 
-impl MethodVisitor<f64> for Bar {
-    type Output = Box<dyn Simulation<1>>;
-
-    fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
-    where
-        B: BasisFamily<f64, 1> + Send + 'static,
-        R: Reconstruction<f64, 1> + Clone + Send + 'static,
-    {
+impl Bar {
+    fn simulation(self, method: Method) -> Box<dyn Simulation<1>> {
         let grid = Grid::new(vector![0.0], vector![1.0], [CELLS]).unwrap();
         let mut points = lattice(&grid, grid.min(), grid.max(), [PER_CELL]);
         if self.shuffled {
@@ -47,18 +40,10 @@ impl MethodVisitor<f64> for Bar {
         for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
             v[0] = 0.8 * (std::f64::consts::PI * x[0]).sin();
         }
-        let setup = Setup::new(
-            grid,
-            basis,
-            reconstruction,
-            Hill {
-                moduli: Moduli::uniaxial(4e4).unwrap(),
-            },
-            OnePhase,
-            particles,
-        )
-        .with_velocity_mass(MassModel::preferring(self.mass));
-        Box::new(Stepper::new(setup).unwrap())
+        let law = Hill {
+            moduli: Moduli::uniaxial(4e4).unwrap(),
+        };
+        compiled::simulation(method, self.mass, parts(grid, law, particles))
     }
 }
 
@@ -72,7 +57,7 @@ fn run(method: Method, bar: Bar, threads: usize) -> (Vec<u64>, f64) {
         let ends = [Side::Min, Side::Max].map(|side| Face { axis: 0, side });
         let fixed = |forcing: Forcing<f64, 1>, end| forcing.with_face(end, FaceCondition::fixed());
         let forcing = ends.into_iter().fold(Forcing::none(), fixed);
-        let mut simulation = method.dispatch(bar).unwrap();
+        let mut simulation = bar.simulation(method);
         for _ in 0..40 {
             simulation.step(1e-5, &forcing).unwrap();
         }

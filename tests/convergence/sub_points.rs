@@ -8,15 +8,20 @@
 
 use materialpoint::basis::DualDomain;
 use materialpoint::grid::{Face, Grid, Side};
-use materialpoint::law::{self, Moduli};
+use materialpoint::law::{Hill, Moduli};
 use materialpoint::particles::{Particles, lattice};
-use materialpoint::phase::{Drag, OnePhase, Phase, TwoPhase};
-use materialpoint::reconstruction::{Reconstruction, Shepard, SubPoints};
-use materialpoint::stepper::{FaceCondition, Forcing, PoreCondition, Setup, Stepper, SurfacePoint};
+use materialpoint::phase::{Drag, OnePhase, Phase, PoreLiquid, TwoPhase};
+use materialpoint::reconstruction::SubPoints;
+use materialpoint::record::Record;
+use materialpoint::stepper::{
+    FaceCondition, Forcing, PoreCondition, Setup, Simulation, Stepper, SurfacePoint,
+};
 use materialpoint_command::run::RunError;
+use materialpoint_steppers::{Build, Parts};
 use nalgebra::vector;
 
 use super::*;
+use crate::compiled::parts;
 
 fn against(kind: &str) -> String {
     format!("reference.column-compaction={{ body_force = -200.0, ramp = 0.5, against = \"{kind}\" }}")
@@ -116,20 +121,14 @@ fn other_pairs_and_numbers_do_not_exist() {
     assert_eq!(elsewhere.to_string(), "linear+shepard4");
 }
 
-/// A bar or column on which particles cross cells, 200 steps: everything that its particles carry.
-fn after_200_steps<P: Phase<f64, 1>>(
-    reconstruction: impl Reconstruction<f64, 1>,
-    phase: P,
-    density: f64,
-    top: PoreCondition<f64>,
-) -> Vec<f64> {
+/// A bar or column on which particles cross cells.
+fn crossing(density: f64) -> (Grid<f64, 1>, Particles<f64, 1>, Vec<SurfacePoint<f64>>, Hill<f64>) {
     let grid = Grid::new(vector![0.0], vector![1.25], [25]).unwrap();
     let points = lattice(&grid, &vector![0.0], &vector![1.0], [3]);
     let mut particles = Particles::at_rest(&points, density);
     for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
         v[0] = 40.0 * x[0];
     }
-    let face = |side| Face { axis: 0, side };
     let surface = vec![SurfacePoint {
         particle: particles.len() - 1,
         face: face(Side::Max),
@@ -138,18 +137,15 @@ fn after_200_steps<P: Phase<f64, 1>>(
         loaded: true,
     }];
     let moduli = Moduli::uniaxial(1e7).unwrap();
-    let mut stepper = Stepper::new(
-        Setup::new(
-            grid,
-            DualDomain::new(),
-            reconstruction,
-            law::Hill { moduli },
-            phase,
-            particles,
-        )
-        .with_surface(surface),
-    )
-    .unwrap();
+    (grid, particles, surface, Hill { moduli })
+}
+
+const fn face(side: Side) -> Face {
+    Face { axis: 0, side }
+}
+
+/// All that the particles carry after 200 steps.
+fn after_200_steps(stepper: &mut dyn Simulation<1>, top: PoreCondition<f64>) -> Vec<f64> {
     let forcing = Forcing::none()
         .with_face(face(Side::Min), FaceCondition::fixed())
         .with_pores(face(Side::Max), top);
@@ -166,6 +162,41 @@ fn after_200_steps<P: Phase<f64, 1>>(
     parts.flat_map(|((x, v), s)| [x[0], v[0], s[(0, 0)]]).collect()
 }
 
+/// Of a method by name.
+fn of_method(
+    method: Method,
+    liquid: Option<TwoPhase<f64>>,
+    density: f64,
+    top: PoreCondition<f64>,
+) -> Vec<f64> {
+    let (grid, particles, surface, law) = crossing(density);
+    let parts = Parts {
+        liquid,
+        pores: vec![PoreLiquid::default(); particles.len()],
+        surface,
+        ..parts(grid, law, particles)
+    };
+    after_200_steps(parts.stepper(method).unwrap().as_mut(), top)
+}
+
+/// Of [`SubPoints`] with the particle itself as the only one, which no name has.
+fn of_one_sub_point<P>(phase: P, density: f64, top: PoreCondition<f64>) -> Vec<f64>
+where
+    P: Phase<f64, 1> + Clone,
+    P::Particle: Record<f64>,
+{
+    let (grid, particles, surface, law) = crossing(density);
+    let setup = Setup::new(
+        grid,
+        DualDomain::new(),
+        SubPoints::default(),
+        law,
+        phase,
+        particles.into_cast(),
+    );
+    after_200_steps(&mut Stepper::new(setup.with_surface(surface)).unwrap(), top)
+}
+
 /// Largest difference relative to the larger of the two values.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     let pairs = a.iter().zip(b);
@@ -178,10 +209,11 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 fn one_sub_point_is_plain_dual_domain() {
     const ROUND_OFF: f64 = 1e-11;
     let sealed = PoreCondition::Sealed;
-    let plain = after_200_steps(Shepard, OnePhase, 2e3, sealed);
-    let single = after_200_steps(SubPoints::default(), OnePhase, 2e3, sealed);
+    let dual_domain = Method::new(Basis::DualDomain, ReconstructionKind::Shepard);
+    let plain = of_method(dual_domain, None, 2e3, sealed);
+    let single = of_one_sub_point(OnePhase, 2e3, sealed);
     assert!(difference(&plain, &single) < ROUND_OFF);
-    let two = after_200_steps(SubPoints::new(2).unwrap(), OnePhase, 2e3, sealed);
+    let two = of_method(Method::sub_points(2), None, 2e3, sealed);
     assert!(difference(&plain, &two) > 1e3 * ROUND_OFF);
     let soil = TwoPhase {
         porosity: 0.4,
@@ -194,7 +226,7 @@ fn one_sub_point_is_plain_dual_domain() {
         drag: Drag::Implicit,
     };
     let (density, drained) = (soil.dry_density(), PoreCondition::Pressure(0.0));
-    let plain = after_200_steps(Shepard, soil, density, drained);
-    let single = after_200_steps(SubPoints::default(), soil, density, drained);
+    let plain = of_method(dual_domain, Some(soil), density, drained);
+    let single = of_one_sub_point(soil, density, drained);
     assert!(difference(&plain, &single) < ROUND_OFF);
 }

@@ -6,12 +6,15 @@ use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::error::{SetupError, StepError};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
+use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
-use materialpoint::phase::OnePhase;
 use materialpoint::reconstruction::{CubicSpline, Reconstruction, RelaxedTaylor, Shepard, Taylor};
-use materialpoint::stepper::{DiffusionCondition, Forcing, Mechanism, Setup, Simulation, Stepper};
+use materialpoint::stepper::{DiffusionCondition, Forcing, Mechanism, Setup, Stepper};
 use materialpoint::testing::{PhaseSample, check_phase};
+use materialpoint_steppers::Build;
 use nalgebra::{SVector, vector};
+
+use crate::compiled::parts;
 
 use super::derivative::dual::Dual;
 use super::heat::{
@@ -428,20 +431,11 @@ fn what_heat_does_not_know_is_refused() {
         moduli: Moduli::uniaxial(YOUNGS_MODULUS).unwrap(),
     };
     let points = lattice(&grid(), grid().min(), grid().max(), [2]);
-    let mut dry = Stepper::new(Setup::new(
-        grid(),
-        Linear,
-        Shepard,
-        law,
-        OnePhase,
-        Particles::at_rest(&points, DENSITY),
-    ))
-    .unwrap();
+    let particles = Particles::at_rest(&points, DENSITY);
+    let method = Method::new(Basis::Linear, ReconstructionKind::Shepard);
+    let mut dry = parts(grid(), law, particles).stepper(method).unwrap();
     let refused = StepError::ValueWithoutDiffusion { face };
-    assert_eq!(dry.step(1e-12, &value(1.0)), Err(refused.clone()));
-    // The same through the face without types.
-    let simulation: &mut dyn Simulation<1> = &mut dry;
-    assert_eq!(simulation.step(1e-12, &value(1.0)), Err(refused));
+    assert_eq!(dry.step(1e-12, &value(1.0)), Err(refused));
 
     let bar = |temperature: f64| {
         body(

@@ -1,15 +1,16 @@
 //! Bodies on a line and the steppers that move them.
 
-use materialpoint::basis::{self, BasisFamily};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::ConstitutiveLaw;
-use materialpoint::mass::{MassModel, VelocityMass};
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::{self, Method, ReconstructionKind};
 use materialpoint::particles::Particles;
-use materialpoint::phase::OnePhase;
-use materialpoint::reconstruction::{self, Reconstruction, RelaxedTaylor, Taylor};
 use materialpoint::record::Record;
-use materialpoint::stepper::{Setup, Simulation, Stepper, SurfacePoint};
+use materialpoint::stepper::{Simulation, SurfacePoint};
+use materialpoint_steppers::Parts;
 use nalgebra::vector;
+
+use crate::compiled::{self, parts};
 
 /// The bases of the papers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,11 +50,11 @@ const fn face(side: Side) -> Face {
 
 /// Particles of one or more bodies on a grid from 0 to `length`.
 #[derive(Clone, Debug)]
-pub struct Bodies<L: ConstitutiveLaw<f64, 1, State: Record<f64>>> {
+pub struct Bodies<L> {
     pub law: L,
     pub length: f64,
     pub cells: usize,
-    pub particles: Particles<f64, 1, L::State>,
+    pub particles: Particles<f64, 1>,
     pub surface: Vec<SurfacePoint<f64>>,
 }
 
@@ -100,7 +101,7 @@ impl<L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Copy + 'static> Bodies<L> 
         self
     }
 
-    fn append(&mut self, more: Particles<f64, 1, L::State>) {
+    fn append(&mut self, more: Particles<f64, 1>) {
         let all = &mut self.particles;
         all.initial_position.extend(more.initial_position);
         all.position.extend(more.position);
@@ -115,51 +116,22 @@ impl<L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Copy + 'static> Bodies<L> 
 
     /// The stepper of a variant.
     pub fn simulation(&self, (basis, rebuilt): Variant) -> Box<dyn Simulation<1>> {
-        match basis {
-            Linear => self.rebuilt(basis::Linear, 1, rebuilt),
-            DualDomain => self.rebuilt(basis::DualDomain::new(), 1, rebuilt),
-            BSpline => self.rebuilt(basis::BSpline::<2>, 2, rebuilt),
-        }
-    }
-
-    fn rebuilt<B>(&self, basis: B, degree: usize, rebuilt: Rebuilt) -> Box<dyn Simulation<1>>
-    where
-        B: BasisFamily<f64, 1> + 'static,
-    {
-        let taylor = Taylor::<f64, 1, 3>::for_degree(degree);
-        match rebuilt {
-            Shepard => self.stepper(basis, reconstruction::Shepard, VelocityMass::Lumped),
-            TaylorLumped => self.stepper(basis, taylor, VelocityMass::Lumped),
-            TaylorConsistent => self.stepper(basis, taylor, VelocityMass::Consistent),
-            Relaxed => {
-                let relaxed = RelaxedTaylor::<f64, 1, 3>::for_basis(&basis);
-                self.stepper(basis, relaxed, VelocityMass::Constrained)
-            }
-        }
-    }
-
-    fn stepper<B, R>(
-        &self,
-        basis: B,
-        reconstruction: R,
-        velocity_mass: VelocityMass,
-    ) -> Box<dyn Simulation<1>>
-    where
-        B: BasisFamily<f64, 1> + 'static,
-        R: Reconstruction<f64, 1> + Clone + 'static,
-    {
-        let stepper = Stepper::new(
-            Setup::new(
-                Grid::new(vector![0.0], vector![self.length], [self.cells]).unwrap(),
-                basis,
-                reconstruction,
-                self.law,
-                OnePhase,
-                self.particles.clone(),
-            )
-            .with_velocity_mass(MassModel::preferring(velocity_mass))
-            .with_surface(self.surface.clone()),
-        );
-        Box::new(stepper.unwrap())
+        let basis = match basis {
+            Linear => method::Basis::Linear,
+            DualDomain => method::Basis::DualDomain,
+            BSpline => method::Basis::BSpline { degree: 2 },
+        };
+        let (reconstruction, mass) = match rebuilt {
+            Shepard => (ReconstructionKind::Shepard, VelocityMass::Lumped),
+            TaylorLumped => (ReconstructionKind::Taylor, VelocityMass::Lumped),
+            TaylorConsistent => (ReconstructionKind::Taylor, VelocityMass::Consistent),
+            Relaxed => (ReconstructionKind::RelaxedTaylor, VelocityMass::Constrained),
+        };
+        let grid = Grid::new(vector![0.0], vector![self.length], [self.cells]).unwrap();
+        let parts = Parts {
+            surface: self.surface.clone(),
+            ..parts(grid, self.law, self.particles.clone())
+        };
+        compiled::simulation(Method::new(basis, reconstruction), mass, parts)
     }
 }

@@ -231,25 +231,22 @@ fn a_step_beyond_hill_s_law_ends_in_an_error_that_names_the_particle() {
 
 #[test]
 fn a_start_beyond_hill_s_law_is_refused() {
-    use materialpoint::basis::Linear;
     use materialpoint::grid::Grid;
+    use materialpoint::method::{self, Method, ReconstructionKind};
     use materialpoint::particles::Particles;
-    use materialpoint::phase::OnePhase;
-    use materialpoint::reconstruction::Shepard;
-    use materialpoint::stepper::{Setup, Stepper};
+    use materialpoint_steppers::{Build, BuildError};
 
     let starting_at = |stress| {
         let mut particles = Particles::at_rest(&[(vector![0.3], 0.5), (vector![0.7], 0.5)], 1.0);
         particles.stress[1][(0, 0)] = stress;
-        Stepper::new(Setup::new(
-            Grid::new(vector![0.0], vector![1.0], [1]).unwrap(),
-            Linear,
-            Shepard,
-            hill(3.0),
-            OnePhase,
-            particles,
-        ))
-        .err()
+        let grid = Grid::new(vector![0.0], vector![1.0], [1]).unwrap();
+        let method = Method::new(method::Basis::Linear, ReconstructionKind::Shepard);
+        let built = crate::compiled::parts(grid, hill(3.0), particles).stepper(method);
+        match built {
+            Err(BuildError::Setup(error)) => Some(error),
+            Err(error) => panic!("{error}"),
+            Ok(_) => None,
+        }
     };
     assert_eq!(starting_at(2.9), None);
     let refused = starting_at(3.0);

@@ -9,16 +9,19 @@
 //! Expected: at least 1 % of the cell's mean at each Gauss point. Round-off: a few sums, and of the fit
 //! before it is drawn, whose coefficients are up to the cell's volume over that of the particles.
 
-use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::field::MassMomentum;
 use materialpoint::grid::Grid;
 use materialpoint::law::{LinearElastic, Moduli};
 use materialpoint::mass::VelocityMass;
+use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::particles::{Bins, Particles};
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
 use materialpoint::reconstruction::{Cloud, Reconstruction, Taylor};
-use materialpoint::stepper::{Forcing, Setup, Simulation, Stepper};
+use materialpoint::stepper::Forcing;
+use materialpoint_steppers::Parts;
 use nalgebra::{SVector, vector};
+
+use crate::compiled::{self, parts};
 
 /// The least streamed density over the mean, as mass (which is kept positive) and as any other amount.
 #[derive(Clone, Copy, Debug)]
@@ -112,7 +115,7 @@ fn a_steep_density_stays_positive() {
 }
 
 /// A saturated body that ends anywhere in its cells, both phases moving on together.
-fn saturated<B: BasisFamily<f64, 1>>(basis: B, degree: usize, mass: VelocityMass, offset: f64) -> f64 {
+fn saturated(basis: Basis, mass: VelocityMass, offset: f64) -> f64 {
     let phase = TwoPhase {
         porosity: 0.4,
         solid_density: 2.6e3,
@@ -127,26 +130,22 @@ fn saturated<B: BasisFamily<f64, 1>>(basis: B, degree: usize, mass: VelocityMass
     let points: Vec<_> = (0..10)
         .map(|k| (vector![1.0 + offset + 0.25 * (f64::from(k) + 0.5)], 0.25))
         .collect();
-    let mut particles: Particles<f64, 1, (), PoreLiquid<f64, 1>> =
-        Particles::at_rest(&points, phase.dry_density());
+    let mut particles: Particles<f64, 1> = Particles::at_rest(&points, phase.dry_density());
+    let mut pores = vec![PoreLiquid::default(); particles.len()];
     for p in 0..particles.len() {
         particles.velocity[p][0] = speed;
-        particles.phase[p].velocity[0] = speed;
+        pores[p].velocity[0] = speed;
     }
-    let stepper = Stepper::new(
-        Setup::new(
-            Grid::new(vector![0.0], vector![6.0], [6]).unwrap(),
-            basis,
-            Taylor::<f64, 1, 3>::for_degree(degree),
-            LinearElastic {
-                moduli: Moduli::uniaxial(1e7).unwrap(),
-            },
-            phase,
-            particles,
-        )
-        .with_velocity_mass(mass),
-    );
-    let mut simulation: Box<dyn Simulation<1>> = Box::new(stepper.unwrap());
+    let grid = Grid::new(vector![0.0], vector![6.0], [6]).unwrap();
+    let law = LinearElastic {
+        moduli: Moduli::uniaxial(1e7).unwrap(),
+    };
+    let parts = Parts {
+        liquid: Some(phase),
+        pores,
+        ..parts(grid, law, particles)
+    };
+    let mut simulation = compiled::simulation(Method::new(basis, ReconstructionKind::Taylor), mass, parts);
     let mut apart = 0.0_f64;
     for _ in 0..5 {
         simulation.step(1e-6, &Forcing::none()).unwrap();
@@ -169,9 +168,9 @@ fn both_phases_of_a_partly_filled_cell_move_on_together() {
         for k in 0..10 {
             let offset = (f64::from(k) + 0.31) / 10.0;
             let found = [
-                saturated(Linear, 1, mass, offset),
-                saturated(DualDomain::new(), 1, mass, offset),
-                saturated(BSpline::<2>, 2, mass, offset),
+                saturated(Basis::Linear, mass, offset),
+                saturated(Basis::DualDomain, mass, offset),
+                saturated(Basis::BSpline { degree: 2 }, mass, offset),
             ];
             assert!(
                 found.iter().all(|&apart| apart < 1e-12),

@@ -5,13 +5,13 @@
 //! a stepper hands the time on.
 
 use super::Specimen;
-use materialpoint::basis::Linear;
+use crate::compiled::parts;
 use materialpoint::grid::Grid;
 use materialpoint::law::{ConstitutiveLaw, NewtonianFluid, VolumeRatio};
+use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
-use materialpoint::phase::OnePhase;
-use materialpoint::reconstruction::Shepard;
-use materialpoint::stepper::{Forcing, Setup, Stepper};
+use materialpoint::stepper::Forcing;
+use materialpoint_steppers::Build;
 use nalgebra::{Matrix1, Matrix2, Matrix3, matrix, vector};
 
 const BULK: f64 = 2e6;
@@ -124,7 +124,8 @@ fn a_step_hands_its_time_to_the_law() {
         *velocity = vector![3.0 * x[1], 0.0];
     }
     let law = fluid(7.0);
-    let mut stepper = Stepper::new(Setup::new(grid, Linear, Shepard, law, OnePhase, particles)).unwrap();
+    let method = Method::new(Basis::Linear, ReconstructionKind::Shepard);
+    let mut stepper = parts(grid, law, particles).stepper(method).unwrap();
     stepper.step(1e-6, &Forcing::none()).unwrap();
     let middle = stepper
         .particles()

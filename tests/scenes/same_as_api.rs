@@ -8,8 +8,8 @@ use materialpoint::basis::Linear;
 use materialpoint::error::StepError;
 use materialpoint::grid::{Face, Grid};
 use materialpoint::law::{
-    AnyLaw, ConeMatch, ConstitutiveLaw, DruckerPrager, Hencky, Hill, LinearElastic, Logarithmic, Moduli,
-    NeoHookean, NewtonianFluid, StVenantKirchhoff, Strength, VonMises,
+    AnyLaw, Bodies, ConeMatch, ConstitutiveLaw, DruckerPrager, Hencky, Hill, LawSweep, LinearElastic,
+    Logarithmic, Moduli, NeoHookean, NewtonianFluid, StVenantKirchhoff, Strength, VonMises,
 };
 use materialpoint::mass::{MassModel, VelocityMass};
 use materialpoint::method::{Basis, Method, ReconstructionKind};
@@ -21,7 +21,9 @@ use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper}
 use materialpoint_command::run::{InSpace, RunError, run_in};
 use materialpoint_command::scene::Scene;
 use materialpoint_steppers::{Build, Parts};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
+
+use crate::compiled;
 
 /// Steps, and their size (s): a power of two, so that no sum of them is rounded.
 const STEPS: u32 = 20;
@@ -130,47 +132,142 @@ impl Case {
         let grid = Grid::new(SVector::zeros(), SVector::repeat(1.0), [4; D]).unwrap();
         let points = lattice(&grid, grid.min(), grid.max(), [3; D]);
         let mut particles = Particles::at_rest(&points, 2.0);
-        for (v, (x, _)) in particles.velocity.iter_mut().zip(&points) {
-            v[0] = self.speed * x[0] * (1.0 - x[0]);
+        for p in 0..points.len() {
+            let x = points[p].0[0];
+            particles.velocity[p][0] = self.speed * x * (1.0 - x);
+            particles.stress[p].fill_diagonal(self.stress);
         }
         let parts = Parts {
-            grid,
-            law,
-            liquid: None,
-            velocity_mass: match method.reconstruction {
-                ReconstructionKind::RelaxedTaylor => VelocityMass::Constrained,
-                _ => VelocityMass::Lumped,
-            },
-            virtual_points: false,
-            particles,
-            pores: Vec::new(),
-            surface: Vec::new(),
-            under_stress: false,
+            under_stress: self.stress != 0.0,
+            ..compiled::behind(grid, law, particles)
         };
-        let mut simulation = parts.stepper(method).unwrap();
+        let mut simulation = compiled::simulation(method, VelocityMass::Lumped, parts);
         for _ in 0..STEPS {
             simulation.step(DT, &walls()).unwrap();
         }
         simulation.particles()
     }
 
-    fn compare<const D: usize, L, R>(&self, law: L, reconstruction: R)
+    /// With the law behind a pointer, as a scene has it, and whether that passes on what the law says.
+    fn compare<const D: usize, L>(&self, law: L)
     where
-        L: ConstitutiveLaw<f64, D> + Clone + 'static,
-        L::State: Record<f64>,
+        L: ConstitutiveLaw<f64, D, State: Record<f64>> + Clone + 'static,
+        AnyLaw<f64, D>: LawSweep<f64, D, Number = f64>,
+        Parts<f64, D>: Build<D>,
+        Scene: InSpace<D>,
+    {
+        passes_on(&law);
+        let method = Method::new(Basis::Linear, ReconstructionKind::RelaxedTaylor);
+        let api = self.by_name(method, AnyLaw::new(law));
+        self.is_scene(&api);
+    }
+
+    /// With a stepper that was compiled for the law.
+    fn compare_with_type<const D: usize, L, R>(&self, law: L, reconstruction: R)
+    where
+        L: ConstitutiveLaw<f64, D, State: Record<f64>> + Clone + 'static,
         R: Reconstruction<f64, D> + Clone + 'static,
         Scene: InSpace<D>,
     {
-        let (scene, api) = (
-            self.by_scene::<D>(RELAXED).unwrap(),
-            self.by_api(law, reconstruction).unwrap(),
-        );
+        self.is_scene(&self.by_api(law, reconstruction).unwrap());
+    }
+
+    fn is_scene<const D: usize>(&self, api: &Particles<f64, D>)
+    where
+        Scene: InSpace<D>,
+    {
+        let scene = self.by_scene::<D>(RELAXED).unwrap();
         assert_eq!(scene.position, api.position, "{}", self.law);
         assert_eq!(scene.velocity, api.velocity, "{}", self.law);
         assert_eq!(scene.stress, api.stress, "{}", self.law);
         assert_eq!(scene.volume, api.volume, "{}", self.law);
         let moved = api.displacement.iter().map(|u| u.norm()).fold(0.0, f64::max);
         assert!(moved > 1e-3, "nothing moves: {moved:e}");
+    }
+}
+
+/// Particles follow a path without order, by the law and by the law behind a pointer: each question has the
+/// same answer, to the bit.
+fn passes_on<const D: usize, L>(law: &L)
+where
+    L: ConstitutiveLaw<f64, D, State: Record<f64>> + Clone + 'static,
+    AnyLaw<f64, D>: LawSweep<f64, D, Number = f64>,
+{
+    const COUNT: usize = 7;
+    let any = AnyLaw::new(law.clone());
+    assert_eq!(LawSweep::limits(law), any.limits());
+    assert_eq!(LawSweep::large_strain(law), any.large_strain());
+    let told = |states: &[L::State]| {
+        let mut numbers = Vec::new();
+        states
+            .iter()
+            .for_each(|state| state.put(&mut |x| numbers.push(x)));
+        numbers
+    };
+    let (mut states, mut numbers) = (vec![L::State::default(); COUNT], any.at_rest(COUNT));
+    assert_eq!(told(&states), numbers);
+    let mut stress = vec![SMatrix::<f64, D, D>::zeros(); COUNT];
+    let mut behind = stress.clone();
+    let mut place = 0.0;
+    let mut noise = || {
+        place += 0.754_877_666;
+        f64::fract(place) - 0.5
+    };
+    let which: Vec<u32> = (0..COUNT as u32).rev().collect();
+    let (mass, volume) = ([3.0; COUNT], [1.5; COUNT]);
+    for _ in 0..40 {
+        let increments: Vec<_> = (0..COUNT)
+            .map(|_| SMatrix::from_fn(|_, _| 0.04 * noise()))
+            .collect();
+        law.carry(DT, &increments, &mut stress, &mut states);
+        any.carry(DT, &increments, &mut behind, &mut numbers);
+        assert_eq!(stress, behind);
+        assert_eq!(told(&states), numbers);
+        assert_eq!(law.are_known(&stress, &states), any.are_known(&stress, &numbers));
+        let mut found = [[0.0; COUNT]; 4];
+        law.energy_densities(&stress, &states, &mut found[0]);
+        any.energy_densities(&stress, &numbers, &mut found[1]);
+        let bodies = |state| Bodies {
+            mass: &mass,
+            volume: &volume,
+            stress: &stress,
+            state,
+        };
+        law.wave_speeds(&which, &bodies(&states[..]), &mut found[2]);
+        let bodies = Bodies {
+            mass: &mass,
+            volume: &volume,
+            stress: &stress,
+            state: &numbers[..],
+        };
+        any.wave_speeds(&which, &bodies, &mut found[3]);
+        assert_eq!((found[0], found[2]), (found[1], found[3]));
+        for p in 0..COUNT {
+            let (own, other) = (LawSweep::of(law, &states, p), any.of(&numbers, p));
+            let (at, change) = (&stress[p], &increments[p]);
+            assert_eq!(
+                LawSweep::wave_speed(law, 2.0, at, own),
+                any.wave_speed(2.0, at, other)
+            );
+            assert_eq!(
+                LawSweep::strain_for(law, change, 2.0, at, own),
+                any.strain_for(change, 2.0, at, other)
+            );
+            assert_eq!(
+                LawSweep::off_plane_stress(law, at, own),
+                any.off_plane_stress(at, other)
+            );
+            assert_eq!(LawSweep::plastic_strain(law, own), any.plastic_strain(other));
+            assert_eq!(LawSweep::knows(law, at, own), any.knows(at, other));
+        }
+    }
+    assert!(stress.iter().any(|stress| stress.norm() > 1e-3));
+    for (size, off_plane) in [(-0.5, None), (-0.5, Some(-0.25)), (0.0, None), (0.5, Some(0.25))] {
+        let at = SMatrix::from_diagonal_element(size);
+        let starts = LawSweep::start(law, &at, off_plane, &mut states[..1]);
+        let each = any.numbers();
+        assert_eq!(starts, any.start(&at, off_plane, &mut numbers[..each]));
+        assert_eq!(told(&states[..1]), numbers[..each]);
     }
 }
 
@@ -210,10 +307,14 @@ fn on_one_axis_the_bits_are_those_of_the_api() {
         ..case(law, stress)
     };
     let moduli = Moduli::uniaxial(8.0).unwrap();
-    small("linear-elastic = { youngs_modulus = 8.0 }", 0.5).compare(LinearElastic { moduli }, on_one_axis());
-    case("linear-elastic = { youngs_modulus = 8.0 }", 0.5).compare(Hill { moduli }, on_one_axis());
-    case("logarithmic = { youngs_modulus = 8.0 }", 0.5).compare(Logarithmic { moduli }, on_one_axis());
-    case("neo-hookean = { youngs_modulus = 8.0 }", 0.0).compare(NeoHookean { moduli }, on_one_axis());
+    small("linear-elastic = { youngs_modulus = 8.0 }", 0.5).compare::<1, _>(LinearElastic { moduli });
+    let rate = case("linear-elastic = { youngs_modulus = 8.0 }", 0.5);
+    rate.compare::<1, _>(Hill { moduli });
+    rate.compare_with_type(Hill { moduli }, on_one_axis());
+    case("logarithmic = { youngs_modulus = 8.0 }", 0.5).compare::<1, _>(Logarithmic { moduli });
+    let remembers = case("neo-hookean = { youngs_modulus = 8.0 }", 0.0);
+    remembers.compare::<1, _>(NeoHookean { moduli });
+    remembers.compare_with_type(NeoHookean { moduli }, on_one_axis());
 }
 
 #[test]
@@ -231,17 +332,20 @@ fn in_the_plane_the_bits_are_those_of_the_api() {
     let moduli = Moduli::from_young(8.0, 0.25).unwrap();
     let elastic = "youngs_modulus = 8.0, poissons_ratio = 0.25";
     let named = |law: &str, more: &str| -> &'static str { format!("{law} = {{ {elastic}{more} }}").leak() };
-    small(named("linear-elastic", ""), 0.5).compare(LinearElastic { moduli }, in_the_plane());
-    case(named("linear-elastic", ""), 0.5).compare(Hill { moduli }, in_the_plane());
-    case(named("neo-hookean", ""), 0.0).compare(NeoHookean { moduli }, in_the_plane());
-    case(named("st-venant-kirchhoff", ""), 0.0).compare(StVenantKirchhoff { moduli }, in_the_plane());
-    case(named("logarithmic", ""), 0.5).compare(Hencky { moduli }, in_the_plane());
+    small(named("linear-elastic", ""), 0.5).compare::<2, _>(LinearElastic { moduli });
+    let rate = case(named("linear-elastic", ""), 0.5);
+    rate.compare::<2, _>(Hill { moduli });
+    rate.compare_with_type(Hill { moduli }, in_the_plane());
+    case(named("neo-hookean", ""), 0.0).compare::<2, _>(NeoHookean { moduli });
+    case(named("st-venant-kirchhoff", ""), 0.0).compare::<2, _>(StVenantKirchhoff { moduli });
+    case(named("logarithmic", ""), 0.5).compare::<2, _>(Hencky { moduli });
     let metal = VonMises::new(moduli, 0.3125, 1.0).unwrap();
-    case(
+    let flows = case(
         named("von-mises", ", yield_stress = 0.3125, hardening = 1.0"),
         -0.5,
-    )
-    .compare(metal, in_the_plane());
+    );
+    flows.compare::<2, _>(metal);
+    flows.compare_with_type(metal, in_the_plane());
     let strength = Strength {
         cohesion: 0.25,
         friction_angle: 30.0_f64.to_radians(),
@@ -252,13 +356,13 @@ fn in_the_plane_the_bits_are_those_of_the_api() {
         named("drucker-prager", ", cohesion = 0.25, friction_angle = 30.0"),
         -0.5,
     )
-    .compare(soil, in_the_plane());
+    .compare::<2, _>(soil);
     let water = NewtonianFluid::new(8.0, 7.0, 0.125).unwrap();
     case(
         "newtonian-fluid = { bulk_modulus = 8.0, gamma = 7.0, viscosity = 0.125 }",
         0.0,
     )
-    .compare(water, in_the_plane());
+    .compare::<2, _>(water);
 }
 
 /// One step strains the first cells by three: Hill's stress has no meaning beyond the modulus.

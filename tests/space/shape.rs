@@ -5,17 +5,17 @@
 //! corner of two smooth walls, its mirror image, and the same with axes exchanged. Expected: stresses that
 //! balance the weight leave the soil at rest; images are images of each other, to the digits of the solver.
 
-use materialpoint::basis::{BSpline, BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Moduli, NeoHookean};
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
-use materialpoint::phase::OnePhase;
-use materialpoint::reconstruction::RelaxedTaylor;
-use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use materialpoint::stepper::{FaceCondition, Forcing};
 use materialpoint_command::run::run_in;
 use nalgebra::{SMatrix, SVector, vector};
 
 use super::scene;
+use crate::compiled::{self, parts};
 
 const METHODS: [[&str; 2]; 9] = [
     ["linear", "shepard"],
@@ -214,10 +214,7 @@ fn images_are_images_of_each_other() {
 
 /// Positions and stresses after some steps of a block in a corner, whose particles are given in the order
 /// `numbers` of their lattice, in that of the lattice.
-fn stepped<B>(basis: B, numbers: &[usize]) -> Vec<(SVector<f64, 2>, SMatrix<f64, 2, 2>)>
-where
-    B: BasisFamily<f64, 2>,
-{
+fn stepped(basis: Basis, numbers: &[usize]) -> Vec<(SVector<f64, 2>, SMatrix<f64, 2, 2>)> {
     let grid = Grid::new(vector![0.0, 0.0], vector![1.0, 1.5], [8, 6]).unwrap();
     let lattice = lattice(&grid, &vector![0.0, 0.0], &vector![0.5, 0.7], [3, 4]);
     let points: Vec<_> = numbers.iter().map(|&k| lattice[k]).collect();
@@ -226,9 +223,9 @@ where
         *v = vector![1.0 + 2.0 * x[1], -2.0 * x[0]];
     }
     let moduli = Moduli::from_young(1e5, 0.3).unwrap();
-    let fits = RelaxedTaylor::<f64, 2, 6>::for_basis(&basis);
-    let setup = Setup::new(grid, basis, fits, NeoHookean { moduli }, OnePhase, particles);
-    let mut stepper = Stepper::new(setup).unwrap();
+    let method = Method::new(basis, ReconstructionKind::RelaxedTaylor);
+    let parts = parts(grid, NeoHookean { moduli }, particles);
+    let mut stepper = compiled::simulation(method, VelocityMass::Constrained, parts);
     let wall = |axis| {
         (
             Face {
@@ -243,7 +240,7 @@ where
         .with_face(left.0, left.1)
         .with_face(floor.0, floor.1);
     (0..20).for_each(|_| stepper.step(5e-4, &forcing).unwrap());
-    let found = Simulation::particles(&stepper);
+    let found = stepper.particles();
     let mut rows = vec![(SVector::zeros(), SMatrix::zeros()); numbers.len()];
     for (p, &k) in numbers.iter().enumerate() {
         rows[k] = (found.position[p], found.stress[p]);
@@ -251,7 +248,7 @@ where
     rows
 }
 
-fn order_does_not_matter<B: BasisFamily<f64, 2> + Copy>(basis: B) {
+fn order_does_not_matter(basis: Basis) {
     // 4 cells of 3 and 2.8 cells of 4.
     let count = 12 * 11;
     let plain: Vec<_> = (0..count).collect();
@@ -267,6 +264,6 @@ fn order_does_not_matter<B: BasisFamily<f64, 2> + Copy>(basis: B) {
 
 #[test]
 fn the_order_of_the_particles_does_not_matter() {
-    order_does_not_matter(Linear);
-    order_does_not_matter(BSpline::<2>);
+    order_does_not_matter(Basis::Linear);
+    order_does_not_matter(Basis::BSpline { degree: 2 });
 }

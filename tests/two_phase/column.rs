@@ -1,19 +1,18 @@
 //! A saturated column through the API: what the gates of this folder step.
 
-use materialpoint::basis::BasisFamily;
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{ConstitutiveLaw, LinearElastic, Moduli};
-use materialpoint::mass::{MassModel, VelocityMass};
-use materialpoint::method::{Method, MethodVisitor};
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::Method;
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
-use materialpoint::reconstruction::Reconstruction;
 use materialpoint::record::Record;
 use materialpoint::reference::two_phase::{Soil, TwoPhaseReference, TwoPhaseState};
-use materialpoint::stepper::{
-    FaceCondition, Forcing, PoreCondition, Setup, Simulation, Stepper, SurfacePoint,
-};
+use materialpoint::stepper::{FaceCondition, Forcing, PoreCondition, Simulation, SurfacePoint};
+use materialpoint_steppers::Parts;
 use nalgebra::vector;
+
+use crate::compiled::{self, parts};
 
 pub const BASE: Face = Face {
     axis: 0,
@@ -63,50 +62,22 @@ impl<L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Clone + 'static> Column<L>
         base_is_surface: bool,
         initial: impl Fn(f64) -> TwoPhaseState,
     ) -> Box<dyn Simulation<1>> {
-        let build = Build {
-            column: self,
-            base_is_surface,
-            initial,
-        };
-        method.dispatch(build).unwrap()
-    }
-}
-
-struct Build<'a, L, I> {
-    column: &'a Column<L>,
-    base_is_surface: bool,
-    initial: I,
-}
-
-impl<L, I> MethodVisitor<f64> for Build<'_, L, I>
-where
-    L: ConstitutiveLaw<f64, 1, State: Record<f64>> + Clone + 'static,
-    I: Fn(f64) -> TwoPhaseState,
-{
-    type Output = Box<dyn Simulation<1>>;
-
-    fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
-    where
-        B: BasisFamily<f64, 1> + Send + 'static,
-        R: Reconstruction<f64, 1> + Clone + Send + 'static,
-    {
-        let column = self.column;
-        let phase = column.phase();
-        let grid = Grid::new(vector![0.0], vector![1.0], [column.cells]).unwrap();
-        let points = lattice(&grid, grid.min(), grid.max(), [column.per_cell]);
-        let mut particles: Particles<f64, 1, L::State, PoreLiquid<f64, 1>> =
-            Particles::at_rest(&points, phase.dry_density());
+        let phase = self.phase();
+        let grid = Grid::new(vector![0.0], vector![1.0], [self.cells]).unwrap();
+        let points = lattice(&grid, grid.min(), grid.max(), [self.per_cell]);
+        let mut particles: Particles<f64, 1> = Particles::at_rest(&points, phase.dry_density());
+        let mut pores = vec![PoreLiquid::default(); particles.len()];
         for p in 0..particles.len() {
-            let state = (self.initial)(particles.position[p][0]);
+            let state = initial(particles.position[p][0]);
             particles.displacement[p][0] = state.solid_displacement;
             particles.velocity[p][0] = state.solid_velocity;
             particles.stress[p][(0, 0)] = state.effective_stress;
-            particles.phase[p].velocity[0] = state.liquid_velocity;
-            particles.phase[p].pressure = state.pore_pressure;
+            pores[p].velocity[0] = state.liquid_velocity;
+            pores[p].pressure = state.pore_pressure;
         }
         let ends = [
-            (self.base_is_surface, 0, BASE),
-            (column.surface, particles.len() - 1, TOP),
+            (base_is_surface, 0, BASE),
+            (self.surface, particles.len() - 1, TOP),
         ];
         let there = ends.into_iter().filter(|end| end.0);
         let surface = there
@@ -118,14 +89,13 @@ where
                 loaded: true,
             })
             .collect();
-        Box::new(
-            Stepper::new(
-                Setup::new(grid, basis, reconstruction, column.law.clone(), phase, particles)
-                    .with_velocity_mass(MassModel::preferring(column.mass))
-                    .with_surface(surface),
-            )
-            .unwrap(),
-        )
+        let parts = Parts {
+            liquid: Some(phase),
+            pores,
+            surface,
+            ..parts(grid, self.law.clone(), particles)
+        };
+        compiled::simulation(method, self.mass, parts)
     }
 }
 

@@ -3,15 +3,18 @@
 //! Walls on all sides, rollers along the strip, Poisson's ratio 0, a motion along x only: every particle of
 //! the strip must do what the column's particle at its x does, to round-off.
 
-use materialpoint::basis::{BSpline, BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid};
 use materialpoint::law::{ConstitutiveLaw, LinearElastic, Moduli, NeoHookean};
-use materialpoint::mass::{MassModel, VelocityMass};
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
-use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
-use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
+use materialpoint::record::Record;
+use materialpoint::stepper::{FaceCondition, Forcing};
+use materialpoint_steppers::{Build, Parts};
 use nalgebra::SVector;
+
+use crate::compiled::{self, parts};
 
 const PHASE: TwoPhase<f64> = TwoPhase {
     porosity: 0.4,
@@ -26,53 +29,58 @@ const PHASE: TwoPhase<f64> = TwoPhase {
 
 /// Velocities along x, effective stress, pressure, largest conservation errors of the particles of the lowest
 /// row.
-fn run<const D: usize, B, R>(basis: B, reconstruction: R, mass: VelocityMass) -> (Vec<[f64; 4]>, f64)
+fn run<const D: usize>(
+    basis: Basis,
+    reconstruction: ReconstructionKind,
+    mass: VelocityMass,
+) -> (Vec<[f64; 4]>, f64)
 where
-    B: BasisFamily<f64, D>,
-    R: Reconstruction<f64, D>,
+    Parts<f64, D>: Build<D>,
 {
     let moduli = Moduli::from_young(1e7, 0.0).unwrap();
-    run_with(LinearElastic { moduli }, basis, reconstruction, mass, 1e-3)
+    let method = Method::new(basis, reconstruction);
+    run_with(LinearElastic { moduli }, method, mass, 1e-3)
 }
 
 /// The same with another law and so much velocity (m/s).
-fn run_with<const D: usize, L, B, R>(
+fn run_with<const D: usize, L>(
     law: L,
-    basis: B,
-    reconstruction: R,
+    method: Method,
     mass: VelocityMass,
     velocity: f64,
 ) -> (Vec<[f64; 4]>, f64)
 where
-    L: ConstitutiveLaw<f64, D>,
-    B: BasisFamily<f64, D>,
-    R: Reconstruction<f64, D>,
+    L: ConstitutiveLaw<f64, D, State: Record<f64>> + 'static,
+    Parts<f64, D>: Build<D>,
 {
     let max = SVector::from_fn(|a, _| if a == 0 { 1.0 } else { 0.3 });
     let cells = std::array::from_fn(|a| if a == 0 { 10 } else { 3 });
     let grid = Grid::new(SVector::zeros(), max, cells).unwrap();
     let points = lattice(&grid, grid.min(), grid.max(), [4; D]);
-    let mut particles: Particles<f64, D, L::State, PoreLiquid<f64, D>> =
-        Particles::at_rest(&points, PHASE.dry_density());
+    let mut particles: Particles<f64, D> = Particles::at_rest(&points, PHASE.dry_density());
+    let mut pores = vec![PoreLiquid::default(); particles.len()];
     for p in 0..particles.len() {
         let s = (std::f64::consts::PI * particles.position[p][0]).sin();
         particles.velocity[p][0] = 1e-3 * s;
-        particles.phase[p].velocity[0] = 2.0 * velocity * s;
+        pores[p].velocity[0] = 2.0 * velocity * s;
     }
-    let setup = Setup::new(grid, basis, reconstruction, law, PHASE, particles)
-        .with_velocity_mass(MassModel::preferring(mass));
-    let mut stepper = Stepper::new(setup).unwrap();
+    let parts = Parts {
+        liquid: Some(PHASE),
+        pores,
+        ..parts(grid, law, particles)
+    };
+    let mut stepper = compiled::simulation(method, mass, parts);
     let walls = Face::all::<D>().fold(Forcing::none(), |f, face| {
         f.with_face(face, FaceCondition::roller(face.axis))
     });
     for _ in 0..100 {
         stepper.step(1e-5, &walls).unwrap();
     }
-    let found = *stepper.diagnostics();
+    let found = stepper.diagnostics();
     // In the order in which they were given.
-    let particles = stepper.into_setup().particles;
+    let (particles, liquid) = stepper.into_particles();
     let row = (0..40).map(|p| {
-        let liquid = particles.phase[p];
+        let liquid = liquid[p];
         [
             particles.velocity[p][0],
             liquid.velocity[0],
@@ -97,21 +105,24 @@ fn compare((line, kept_1): (Vec<[f64; 4]>, f64), (strip, kept_2): (Vec<[f64; 4]>
     assert!(kept_1 < 1e-13 && kept_2 < 1e-13, "{kept_1} {kept_2}");
 }
 
+const BSPLINE: Basis = Basis::BSpline { degree: 2 };
+
 #[test]
 fn a_strip_does_what_the_column_does() {
     let lumped = VelocityMass::Lumped;
-    compare(
-        run::<1, _, _>(Linear, Shepard, lumped),
-        run::<2, _, _>(Linear, Shepard, lumped),
-    );
-    compare(
-        run::<1, _, _>(BSpline::<2>, Shepard, lumped),
-        run::<2, _, _>(BSpline::<2>, Shepard, lumped),
-    );
-    for mass in [lumped, VelocityMass::Consistent] {
+    for (basis, reconstruction, mass) in [
+        (Basis::Linear, ReconstructionKind::Shepard, lumped),
+        (BSPLINE, ReconstructionKind::Shepard, lumped),
+        (Basis::Linear, ReconstructionKind::Taylor, lumped),
+        (
+            Basis::Linear,
+            ReconstructionKind::Taylor,
+            VelocityMass::Consistent,
+        ),
+    ] {
         compare(
-            run::<1, _, _>(Linear, Taylor::<f64, 1, 3>::new(), mass),
-            run::<2, _, _>(Linear, Taylor::<f64, 2, 6>::new(), mass),
+            run::<1>(basis, reconstruction, mass),
+            run::<2>(basis, reconstruction, mass),
         );
     }
 }
@@ -119,11 +130,16 @@ fn a_strip_does_what_the_column_does() {
 /// A law that remembers its deformation gradient, under some per cent of strain.
 #[test]
 fn a_strip_of_a_law_that_remembers_does_too() {
-    fn neo_hookean<const D: usize>(basis: impl BasisFamily<f64, D>) -> (Vec<[f64; 4]>, f64) {
+    fn neo_hookean<const D: usize>(basis: Basis) -> (Vec<[f64; 4]>, f64)
+    where
+        Parts<f64, D>: Build<D>,
+        NeoHookean<f64>: ConstitutiveLaw<f64, D, State: Record<f64>>,
+    {
         let moduli = Moduli::from_young(1e7, 0.0).unwrap();
-        run_with(NeoHookean { moduli }, basis, Shepard, VelocityMass::Lumped, 10.0)
+        let method = Method::new(basis, ReconstructionKind::Shepard);
+        run_with(NeoHookean { moduli }, method, VelocityMass::Lumped, 10.0)
     }
-    compare(neo_hookean::<1>(Linear), neo_hookean::<2>(Linear));
-    compare(neo_hookean::<1>(BSpline::<2>), neo_hookean::<2>(BSpline::<2>));
-    compare(neo_hookean::<1>(Linear), neo_hookean::<3>(Linear));
+    compare(neo_hookean::<1>(Basis::Linear), neo_hookean::<2>(Basis::Linear));
+    compare(neo_hookean::<1>(BSPLINE), neo_hookean::<2>(BSPLINE));
+    compare(neo_hookean::<1>(Basis::Linear), neo_hookean::<3>(Basis::Linear));
 }

@@ -6,19 +6,19 @@
 //! a typed error, because on some layouts they grow whatever the step (`docs/verification/two-phase.md`, long
 //! runs). Three times the step runs on or ends in one.
 
-use materialpoint::basis::BasisFamily;
 use materialpoint::grid::Grid;
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::{MassModel, VelocityMass};
-use materialpoint::method::{Method, MethodVisitor, ReconstructionKind};
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::{Method, ReconstructionKind};
 use materialpoint::particles::Particles;
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
-use materialpoint::reconstruction::Reconstruction;
-use materialpoint::stepper::{CriticalStep, Setup, Simulation, Stepper, SurfacePoint};
+use materialpoint::stepper::{CriticalStep, Simulation, SurfacePoint};
+use materialpoint_steppers::Parts;
 use nalgebra::{SVector, vector};
 use proptest::prelude::*;
 
 use super::column::{TOP, loaded};
+use crate::compiled::{self, parts};
 
 #[derive(Clone, Debug)]
 struct Scene {
@@ -33,27 +33,21 @@ struct Scene {
     load: f64,
 }
 
-impl MethodVisitor<f64> for &Scene {
-    type Output = Box<dyn Simulation<1>>;
-
-    fn visit<B, R>(self, basis: B, reconstruction: R) -> Self::Output
-    where
-        B: BasisFamily<f64, 1> + Send + 'static,
-        R: Reconstruction<f64, 1> + Clone + Send + 'static,
-    {
+impl Scene {
+    fn simulation(&self) -> Box<dyn Simulation<1>> {
         let grid = Grid::new(vector![0.0], vector![1.0], [self.cells]).unwrap();
         let mut x = self.layout.clone();
         x.sort_by(f64::total_cmp);
         let volume = self.fill / x.len() as f64;
         let points: Vec<(SVector<f64, 1>, f64)> =
             x.iter().map(|x| (vector![x * self.fill], volume)).collect();
-        let mut particles: Particles<f64, 1, (), PoreLiquid<f64, 1>> =
-            Particles::at_rest(&points, self.phase.dry_density());
+        let mut particles: Particles<f64, 1> = Particles::at_rest(&points, self.phase.dry_density());
+        let mut pores = vec![PoreLiquid::default(); particles.len()];
         for p in 0..particles.len() {
             let s = x[p];
             particles.velocity[p][0] = 1e-6 * (7.0 * s).sin();
-            particles.phase[p].velocity[0] = 1e-6 * (5.0 * s).cos();
-            particles.phase[p].pressure = self.load * (1.0 - s);
+            pores[p].velocity[0] = 1e-6 * (5.0 * s).cos();
+            pores[p].pressure = self.load * (1.0 - s);
         }
         let last = particles.len() - 1;
         let surface = vec![SurfacePoint {
@@ -64,23 +58,18 @@ impl MethodVisitor<f64> for &Scene {
             loaded: true,
         }];
         let moduli = Moduli::uniaxial(self.modulus).unwrap();
-        let stepper = Stepper::new(
-            Setup::new(
-                grid,
-                basis,
-                reconstruction,
-                LinearElastic { moduli },
-                self.phase,
-                particles,
-            )
-            .with_velocity_mass(MassModel::preferring(if self.lumped {
-                VelocityMass::Lumped
-            } else {
-                VelocityMass::Consistent
-            }))
-            .with_surface(surface),
-        );
-        Box::new(stepper.unwrap())
+        let parts = Parts {
+            liquid: Some(self.phase),
+            pores,
+            surface,
+            ..parts(grid, LinearElastic { moduli }, particles)
+        };
+        let mass = if self.lumped {
+            VelocityMass::Lumped
+        } else {
+            VelocityMass::Consistent
+        };
+        compiled::simulation(Method::ALL[self.method], mass, parts)
     }
 }
 
@@ -136,7 +125,7 @@ proptest! {
     #[test]
     fn both_phases_keep_mass_and_momentum(scene in scenes()) {
         let method = Method::ALL[scene.method];
-        let mut simulation = method.dispatch(&scene).unwrap();
+        let mut simulation = scene.simulation();
         let forcing = loaded(scene.load);
         let Some(CriticalStep { step, .. }) = simulation.critical_step(&forcing) else {
             return Ok(()); // So few particles that nothing resists their motion.
@@ -157,7 +146,7 @@ proptest! {
 
     #[test]
     fn too_large_a_step_ends_in_a_typed_error_or_not_at_all(scene in scenes()) {
-        let mut simulation = Method::ALL[scene.method].dispatch(&scene).unwrap();
+        let mut simulation = scene.simulation();
         let forcing = loaded(scene.load);
         let Some(CriticalStep { step, .. }) = simulation.critical_step(&forcing) else {
             return Ok(());

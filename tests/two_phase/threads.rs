@@ -1,15 +1,17 @@
 //! Two phases take the sweeps of one: threads change no bit, and neither does it matter in which order
 //! particles come.
 
-use materialpoint::basis::{BSpline, BasisFamily, DualDomain, Linear};
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{LinearElastic, Moduli};
-use materialpoint::mass::{MassModel, VelocityMass};
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::{Basis, Method, ReconstructionKind};
 use materialpoint::particles::{Particles, lattice};
 use materialpoint::phase::{Drag, PoreLiquid, TwoPhase};
-use materialpoint::reconstruction::{Reconstruction, Shepard, Taylor};
-use materialpoint::stepper::{FaceCondition, Forcing, Setup, Simulation, Stepper};
+use materialpoint::stepper::{FaceCondition, Forcing, Simulation};
+use materialpoint_steppers::Parts;
 use nalgebra::{SVector, vector};
+
+use crate::compiled::{self, parts};
 
 const CELLS: [usize; 2] = [72, 40];
 const STEPS: usize = 12;
@@ -27,11 +29,7 @@ const PHASE: TwoPhase<f64> = TwoPhase {
 
 /// A full box in which solid and liquid move otherwise, crossing cells; with `shuffled` particles in no
 /// order.
-fn body<B, R>(basis: &B, reconstruction: &R, mass: VelocityMass, shuffled: bool) -> Box<dyn Simulation<2>>
-where
-    B: BasisFamily<f64, 2> + Send + 'static,
-    R: Reconstruction<f64, 2> + Clone + Send + 'static,
-{
+fn body(method: Method, mass: VelocityMass, shuffled: bool) -> Box<dyn Simulation<2>> {
     let grid = Grid::new(vector![0.0, 0.0], vector![1.8, 1.0], CELLS).unwrap();
     let mut points = lattice(&grid, grid.min(), grid.max(), [2, 2]);
     let count = points.len();
@@ -39,29 +37,25 @@ where
         // A stride that shares no factor with the count visits every point once.
         points = (0..count).map(|p| points[p * 10_007 % count]).collect();
     }
-    let mut particles = Particles::at_rest(&points, PHASE.dry_density());
-    for ((v, data), x) in (particles.velocity.iter_mut().zip(&mut particles.phase)).zip(&particles.position) {
+    let mut particles: Particles<f64, 2> = Particles::at_rest(&points, PHASE.dry_density());
+    let mut pores = vec![PoreLiquid::default(); count];
+    for ((v, pore), x) in (particles.velocity.iter_mut().zip(&mut pores)).zip(&particles.position) {
         let wave = (std::f64::consts::PI * x[1]).sin() * (std::f64::consts::PI * x[0] / 1.8).sin();
         *v = vector![3.0, -2.0] * wave;
-        *data = PoreLiquid {
+        *pore = PoreLiquid {
             velocity: vector![2.0, 3.0] * wave,
             pressure: -1e2 * x[1],
         };
     }
-    let stepper = Stepper::new(
-        Setup::new(
-            grid,
-            basis.clone(),
-            reconstruction.clone(),
-            LinearElastic {
-                moduli: Moduli::from_young(1e6, 0.2).unwrap(),
-            },
-            PHASE,
-            particles,
-        )
-        .with_velocity_mass(MassModel::preferring(mass)),
-    );
-    Box::new(stepper.unwrap())
+    let law = LinearElastic {
+        moduli: Moduli::from_young(1e6, 0.2).unwrap(),
+    };
+    let parts = Parts {
+        liquid: Some(PHASE),
+        pores,
+        ..parts(grid, law, particles)
+    };
+    compiled::simulation(method, mass, parts)
 }
 
 /// Positions, velocities, stresses, and velocities and pressures of the liquid after some steps on so many
@@ -99,27 +93,15 @@ fn run(
     })
 }
 
-fn check<B, R>(basis: B, reconstruction: R, mass: VelocityMass)
-where
-    B: BasisFamily<f64, 2> + Send + 'static,
-    R: Reconstruction<f64, 2> + Clone + Send + 'static,
-{
-    check_on(basis, reconstruction, mass, FaceCondition::roller(1));
-}
-
-fn check_on<B, R>(basis: B, reconstruction: R, mass: VelocityMass, floor: FaceCondition<f64, 2>)
-where
-    B: BasisFamily<f64, 2> + Send + 'static,
-    R: Reconstruction<f64, 2> + Clone + Send + 'static,
-{
-    let one = run(|| body(&basis, &reconstruction, mass, false), floor, 1);
+fn check(method: Method, mass: VelocityMass, floor: FaceCondition<f64, 2>) {
+    let one = run(|| body(method, mass, false), floor, 1);
     for threads in [2, 3] {
-        let more = run(|| body(&basis, &reconstruction, mass, false), floor, threads);
+        let more = run(|| body(method, mass, false), floor, threads);
         let same = one.iter().zip(&more).all(|(a, b)| a.to_bits() == b.to_bits());
         assert!(same, "{mass:?}, {threads} threads");
     }
     // Numbers of a kind lie together, and each particle's come back in the order in which it was given.
-    let shuffled = run(|| body(&basis, &reconstruction, mass, true), floor, 2);
+    let shuffled = run(|| body(method, mass, true), floor, 2);
     let count = one.len() / 8;
     for p in 0..count {
         let q = p * 10_007 % count;
@@ -143,14 +125,13 @@ where
 
 #[test]
 fn any_number_of_threads_gives_the_bits_of_one_and_the_order_of_particles_does_not_matter() {
-    check(Linear, Shepard, VelocityMass::Lumped);
-    check(DualDomain::new(), Shepard, VelocityMass::Lumped);
-    check(BSpline::<2>, Taylor::<f64, 2, 6>::new(), VelocityMass::Lumped);
-    check(
-        BSpline::<2>,
-        Taylor::<f64, 2, 6>::new(),
-        VelocityMass::Constrained,
-    );
-    let rubs = FaceCondition::frictional(0.3);
-    check_on(Linear, Shepard, VelocityMass::Lumped, rubs);
+    let linear = Method::new(Basis::Linear, ReconstructionKind::Shepard);
+    let dual_domain = Method::new(Basis::DualDomain, ReconstructionKind::Shepard);
+    let fits = Method::new(Basis::BSpline { degree: 2 }, ReconstructionKind::Taylor);
+    let smooth = FaceCondition::roller(1);
+    check(linear, VelocityMass::Lumped, smooth);
+    check(dual_domain, VelocityMass::Lumped, smooth);
+    check(fits, VelocityMass::Lumped, smooth);
+    check(fits, VelocityMass::Constrained, smooth);
+    check(linear, VelocityMass::Lumped, FaceCondition::frictional(0.3));
 }

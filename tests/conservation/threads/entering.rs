@@ -6,14 +6,17 @@ use std::collections::HashSet;
 use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 
-use materialpoint::basis::{BSpline, BasisFamily, Linear};
 use materialpoint::grid::{Face, Grid};
 use materialpoint::law::ConstitutiveLaw;
+use materialpoint::mass::VelocityMass;
+use materialpoint::method::ReconstructionKind::{self, RelaxedTaylor, Shepard};
+use materialpoint::method::{Basis, Method};
 use materialpoint::particles::{Particles, lattice};
-use materialpoint::phase::OnePhase;
-use materialpoint::reconstruction::{Reconstruction, RelaxedTaylor, Shepard};
-use materialpoint::stepper::{FaceCondition, Forcing, Setup, Stepper};
+use materialpoint::stepper::{FaceCondition, Forcing};
+use materialpoint_steppers::{Build, Parts};
 use nalgebra::{SMatrix, SVector};
+
+use crate::compiled::{self, parts};
 
 const MODULUS: f64 = 4e4;
 const DENSITY: f64 = 2e3;
@@ -64,10 +67,14 @@ fn waits() -> Option<usize> {
     line.trim().parse().ok()
 }
 
-fn run<const D: usize, B, R>(cells: usize, per_cell: usize, basis: B, reconstruction: R) -> Found
+fn run<const D: usize>(
+    cells: usize,
+    per_cell: usize,
+    basis: Basis,
+    reconstruction: ReconstructionKind,
+) -> Found
 where
-    B: BasisFamily<f64, D>,
-    R: Reconstruction<f64, D>,
+    Parts<f64, D>: Build<D>,
 {
     let grid = Grid::new(SVector::zeros(), SVector::repeat(1.0), [cells; D]).unwrap();
     let mut particles = Particles::at_rest(&lattice(&grid, grid.min(), grid.max(), [per_cell; D]), DENSITY);
@@ -75,15 +82,9 @@ where
         *v = x.map(|x| 0.8 * (std::f64::consts::PI * x).sin());
     }
     let seen = Seen::default();
-    let mut stepper = Stepper::new(Setup::new(
-        grid,
-        basis,
-        reconstruction,
-        Watched(seen.clone()),
-        OnePhase,
-        particles,
-    ))
-    .unwrap();
+    let parts = parts(grid, Watched(seen.clone()), particles);
+    let method = Method::new(basis, reconstruction);
+    let mut stepper = compiled::simulation(method, VelocityMass::Lumped, parts);
     let forcing = Face::all::<D>().fold(Forcing::none(), |forcing, face| {
         forcing.with_face(face, FaceCondition::roller(face.axis))
     });
@@ -132,17 +133,17 @@ fn enters_once_a_step(run: impl Fn() -> Found + Send + Sync) {
 
 #[test]
 fn a_long_step_enters_the_pool_once() {
-    let relaxed = || RelaxedTaylor::<f64, 1, 3>::for_degree(1);
-    enters_once_a_step(|| run::<1, _, _>(3000, 7, Linear, relaxed()));
-    enters_once_a_step(|| run::<1, _, _>(3000, 7, Linear, Shepard));
-    enters_once_a_step(|| run::<2, _, _>(60, 2, BSpline::<2>, Shepard));
-    enters_once_a_step(|| run::<2, _, _>(40, 3, BSpline::<2>, RelaxedTaylor::<f64, 2, 6>::for_degree(2)));
+    const BSPLINE: Basis = Basis::BSpline { degree: 2 };
+    enters_once_a_step(|| run::<1>(3000, 7, Basis::Linear, RelaxedTaylor));
+    enters_once_a_step(|| run::<1>(3000, 7, Basis::Linear, Shepard));
+    enters_once_a_step(|| run::<2>(60, 2, BSPLINE, Shepard));
+    enters_once_a_step(|| run::<2>(40, 3, BSPLINE, RelaxedTaylor));
 }
 
 #[test]
 fn a_short_step_stays_on_its_thread() {
     let [outside, _] = outside_and_alone(|| {
-        let found = run::<1, _, _>(500, 8, Linear, RelaxedTaylor::<f64, 1, 3>::for_degree(1));
+        let found = run::<1>(500, 8, Basis::Linear, RelaxedTaylor);
         let own = thread::current().id();
         assert!(found.threads.iter().all(|&(id, _)| id == own));
         found
