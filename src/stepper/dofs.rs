@@ -24,8 +24,8 @@ pub(super) struct Dofs<T, const D: usize> {
     pub(super) lumped: Vec<T>,
     /// Consistent mass; of order zero where it is not used.
     pub(super) matrix: MassMatrix<T, D>,
-    /// What the terms of a series are summed in; of no DOF where there is none.
-    pub(super) series: Series<T, D>,
+    /// What the terms of a series are summed in.
+    pub(super) series: Option<Box<Series<T, D>>>,
 }
 
 impl<T: Scalar, const D: usize> Dofs<T, D> {
@@ -37,7 +37,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             velocity: Vec::new(),
             lumped: Vec::new(),
             matrix: MassMatrix::none(),
-            series: Series::new(0),
+            series: None,
         }
     }
 
@@ -56,10 +56,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
                 true => MassMatrix::new(basis, grid, mass == Divisor::ParticleMatrix),
                 false => MassMatrix::none(),
             },
-            series: Series::new(match mass {
-                Divisor::ParticleSeries(_) => count,
-                _ => 0,
-            }),
+            series: mass.is_series().then(|| Box::new(Series::new(count))),
         }
     }
 
@@ -80,7 +77,7 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
     pub(super) fn bytes(&self) -> usize {
         size_of::<T>() * (self.mass.len() + self.lumped.len())
             + self.matrix.bytes()
-            + self.series.bytes()
+            + self.series.as_ref().map_or(0, |series| series.bytes())
             + 2 * size_of::<SVector<T, D>>() * self.force.len()
     }
 }

@@ -62,7 +62,9 @@ where
                     ..
                 } = &mut self.inner;
                 let space = (&self.basis, &*grid, &*bins);
-                dofs.series.deflation.find_bodies(space, places, &dofs.mass);
+                if let Some(series) = &mut dofs.series {
+                    series.deflation.find_bodies(space, places, &dofs.mass);
+                }
             }
             return;
         }

@@ -24,7 +24,7 @@ pub(super) struct Series<T, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Series<T, D> {
-    /// For so many DOFs, none if there is no series.
+    /// For so many DOFs.
     pub(super) fn new(dofs: usize) -> Self {
         Self {
             right: vec![T::zero(); dofs],
@@ -36,7 +36,8 @@ impl<T: Scalar, const D: usize> Series<T, D> {
     }
 
     pub(super) fn bytes(&self) -> usize {
-        size_of::<T>() * 3 * self.sum.len()
+        size_of::<Self>()
+            + size_of::<T>() * 3 * self.sum.len()
             + size_of::<Option<T>>() * self.told.len()
             + self.deflation.bytes()
     }
@@ -68,6 +69,9 @@ impl<T: Scalar, const D: usize> Dofs<T, D> {
             series,
             ..
         } = self;
+        let Some(series) = series.as_deref_mut() else {
+            return;
+        };
         let right = match unknown {
             Unknown::Acceleration => force,
             Unknown::Velocity => velocity,

@@ -2,6 +2,7 @@
 //! takes.
 
 mod memory;
+mod nodal;
 
 use materialpoint::grid::{Face, Grid, Side};
 use materialpoint::law::{Hill, Moduli};
